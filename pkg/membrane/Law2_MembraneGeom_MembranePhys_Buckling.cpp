@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "Law2_MembraneGeom_MembranePhys_Buckling.hpp"
+#include "Faults.hpp"
+#include "mechanics/SideForce.hpp"
+#include <core/EnergyTracker.hpp>
+#include <core/Interaction.hpp>
+#include <core/InteractionContainer.hpp>
+#include <core/Omega.hpp>
+#include <core/Scene.hpp>
+#include <cmath>
+
+namespace yade {
+
+YADE_PLUGIN((Law2_MembraneGeom_MembranePhys_Buckling));
+
+bool Law2_MembraneGeom_MembranePhys_Buckling::go(shared_ptr<IGeom>& geomBase, shared_ptr<IPhys>& physBase,
+                                                 Interaction* link) {
+    const auto& geom = *static_cast<MembraneGeom*>(geomBase.get());
+    auto& phys = *static_cast<MembranePhys*>(physBase.get());
+
+    const Real tension = ::membrane::sideTension(geom.length, phys.kn, phys.restLength, phys.criticalLength);
+    if (!std::isfinite(geom.length)) {
+        faults::record(scene, "Membrane: the side between bodies #" + std::to_string(link->getId1()) + " and #" +
+                                  std::to_string(link->getId2()) + " has the length " + std::to_string(geom.length) + " m");
+        return true;
+    }
+    phys.normalForce = -tension * geom.normal;
+    addForce(link->getId1(), -phys.normalForce, scene);
+    addForce(link->getId2(), phys.normalForce, scene);
+
+    if (scene->trackEnergy)
+        scene->energy->add(::membrane::sideEnergy(geom.length, phys.kn, phys.restLength, phys.criticalLength),
+                           "membraneElastic", energyIndex, /*reset in every step*/ true);
+    return true;
+}
+
+Real Law2_MembraneGeom_MembranePhys_Buckling::elasticEnergy() const {
+    Real energy = 0.;
+    for (const auto& link : *Omega::instance().getScene()->interactions) {
+        if (!link->isReal()) continue;
+        const auto* geom = dynamic_cast<MembraneGeom*>(link->geom.get());
+        const auto* phys = dynamic_cast<MembranePhys*>(link->phys.get());
+        if (geom && phys)
+            energy += ::membrane::sideEnergy(geom->length, phys->kn, phys->restLength, phys->criticalLength);
+    }
+    return energy;
+}
+
+} // namespace yade

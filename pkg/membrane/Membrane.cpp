@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "Membrane.hpp"
+#include "MembraneGeom.hpp"
+#include "MembranePhys.hpp"
+#include "mechanics/SideForce.hpp"
+#include <core/BodyContainer.hpp>
+#include <core/Interaction.hpp>
+#include <core/InteractionContainer.hpp>
+#include <core/Omega.hpp>
+#include <core/Scene.hpp>
+#include <pkg/common/Sphere.hpp>
+#include <cmath>
+
+namespace yade {
+
+YADE_PLUGIN((Membrane));
+
+namespace {
+
+std::uint64_t pairKey(Body::id_t a, Body::id_t b) {
+    return (static_cast<std::uint64_t>(std::min(a, b)) << 32) | static_cast<std::uint32_t>(std::max(a, b));
+}
+
+/// One value a side, computed from the side.
+template <class Get> auto ofSides(const ::membrane::RestState& rest, Get get) {
+    vector<decltype(get(rest.sides[0]))> values;
+    values.reserve(rest.sides.size());
+    for (const ::membrane::Side& side : rest.sides) values.push_back(get(side));
+    return values;
+}
+
+} // namespace
+
+void Membrane::postLoad(Membrane&) {
+    if (nodes.empty() && triangles.empty() && cables.empty()) return; // default constructed: filled in later by loading
+    if (!material && !triangles.empty()) throw std::invalid_argument("Membrane: material is missing; give a MembraneMat");
+    ::membrane::MeshInput input;
+    input.nodes = nodes;
+    input.triangles = triangles;
+    input.creases = creases;
+    input.creaseSigns = creaseSigns;
+    input.cables = cables;
+    input.pointMasses = pointMasses;
+    if (material) {
+        input.young = material->young;
+        input.poisson = material->poisson;
+        input.density = material->density;
+        input.thickness = material->thickness;
+    }
+    input.cableStiffness = cableStiffness;
+    input.cableDensity = cableDensity;
+    input.alpha = alpha;
+    input.alphaCrease = alphaCrease;
+    input.allowNegativeStiffness = allowNegativeStiffness;
+    rest_ = ::membrane::restState(input);
+    if (!bodyIds.empty()) indexSides();
+}
+
+void Membrane::indexSides() {
+    if (bodyIds.size() != nodes.size())
+        throw std::invalid_argument("Membrane: bodyIds has " + std::to_string(bodyIds.size()) + " entries; it must have one for each of the " +
+                                    std::to_string(nodes.size()) + " nodes");
+    sideOfBodies_.clear();
+    sideOfBodies_.reserve(rest_.sides.size());
+    for (std::size_t i = 0; i < rest_.sides.size(); ++i)
+        sideOfBodies_[pairKey(bodyIds[rest_.sides[i].a], bodyIds[rest_.sides[i].b])] = static_cast<int>(i);
+}
+
+int Membrane::sideBetween(Body::id_t a, Body::id_t b) const {
+    const auto found = sideOfBodies_.find(pairKey(a, b));
+    return found == sideOfBodies_.end() ? -1 : found->second;
+}
+
+vector<shared_ptr<State>> Membrane::states(Scene& scene) const {
+    if (bodyIds.size() != nodes.size() || nodes.empty())
+        throw std::runtime_error("Membrane: its nodes have no bodies yet; call addBodies() first");
+    vector<shared_ptr<State>> states;
+    states.reserve(bodyIds.size());
+    for (std::size_t i = 0; i < bodyIds.size(); ++i) {
+        const shared_ptr<Body> body = Body::byId(bodyIds[i], &scene);
+        if (!body) throw std::runtime_error("Membrane: body #" + std::to_string(bodyIds[i]) + " of node " + std::to_string(i) + " is not in the scene");
+        states.push_back(body->state);
+    }
+    return states;
+}
+
+::membrane::Points Membrane::positions(Scene& scene) const {
+    ::membrane::Points x;
+    x.reserve(nodes.size());
+    for (const auto& state : states(scene)) x.push_back(state->pos);
+    return x;
+}
+
+vector<int> Membrane::addBodies(const vector<Vector3r>& at, Real radius) {
+    const shared_ptr<Scene> scene = Omega::instance().getScene();
+    const vector<Vector3r>& place = at.empty() ? nodes : at;
+    if (nodes.empty()) throw std::invalid_argument("Membrane: nodes is empty; give it to the constructor");
+    if (!bodyIds.empty()) throw std::runtime_error("Membrane: its bodies were added already");
+    if (!material) throw std::invalid_argument("Membrane: material is missing; give a MembraneMat");
+    if (place.size() != nodes.size())
+        throw std::invalid_argument("Membrane.addBodies: positions has " + std::to_string(place.size()) + " points; it must have one for each of the " +
+                                    std::to_string(nodes.size()) + " nodes");
+    if (!(radius > 0.) || !std::isfinite(radius)) throw std::invalid_argument("Membrane.addBodies: radius = " + std::to_string(radius) + " must be finite and > 0");
+    for (std::size_t i = 0; i < place.size(); ++i)
+        if (!place[i].allFinite()) throw std::invalid_argument("Membrane.addBodies: positions[" + std::to_string(i) + "] must be finite");
+
+    if (material->id < 0) { // not yet among the scene's materials
+        material->id = static_cast<int>(scene->materials.size());
+        scene->materials.push_back(material);
+    }
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const shared_ptr<Body> body(new Body);
+        const shared_ptr<Sphere> sphere(new Sphere);
+        sphere->radius = radius;
+        body->shape = sphere;
+        body->material = material;
+        body->setBounded(false);
+        body->state->pos = body->state->refPos = place[i];
+        body->state->mass = rest_.masses[i];
+        body->state->inertia = Vector3r::Constant(0.4 * rest_.masses[i] * radius * radius);
+        body->state->blockedDOFs = State::DOF_RXRYRZ;
+        bodyIds.push_back(scene->bodies->insert(body));
+    }
+    indexSides();
+    return bodyIds;
+}
+
+void Membrane::addInteractions() {
+    const shared_ptr<Scene> scene = Omega::instance().getScene();
+    const ::membrane::Points x = positions(*scene);
+    for (const ::membrane::Side& side : rest_.sides) {
+        const shared_ptr<Interaction> link(new Interaction(bodyIds[side.a], bodyIds[side.b]));
+        const shared_ptr<MembraneGeom> geom(new MembraneGeom);
+        geom->refR1 = geom->refR2 = 0.5 * side.restLength;
+        geom->update(x[side.a], x[side.b]);
+        link->geom = geom;
+        link->phys = shared_ptr<MembranePhys>(new MembranePhys(side));
+        link->iterMadeReal = scene->iter;
+        if (!scene->interactions->insert(link))
+            throw std::runtime_error("Membrane.addInteractions: bodies #" + std::to_string(bodyIds[side.a]) + " and #" + std::to_string(bodyIds[side.b]) +
+                                     " interact already");
+    }
+}
+
+Real Membrane::elasticEnergy() const {
+    const shared_ptr<Scene> scene = Omega::instance().getScene();
+    const ::membrane::Points x = positions(*scene);
+    Real energy = 0.;
+    for (const ::membrane::Side& s : rest_.sides)
+        energy += ::membrane::sideEnergy((x[s.b] - x[s.a]).norm(), s.stiffness, s.restLength, s.critical);
+    return energy;
+}
+
+vector<Real> Membrane::lengths() const {
+    const ::membrane::Points x = positions(*Omega::instance().getScene());
+    return ofSides(rest_, [&x](const ::membrane::Side& s) -> Real { return (x[s.b] - x[s.a]).norm(); });
+}
+
+vector<Real> Membrane::tensions() const {
+    const ::membrane::Points x = positions(*Omega::instance().getScene());
+    return ofSides(rest_, [&x](const ::membrane::Side& s) -> Real {
+        return ::membrane::sideTension((x[s.b] - x[s.a]).norm(), s.stiffness, s.restLength, s.critical);
+    });
+}
+
+boost::python::list Membrane::sidesPy() const {
+    boost::python::list pairs;
+    for (const ::membrane::Side& s : rest_.sides) pairs.append(boost::python::make_tuple(s.a, s.b));
+    return pairs;
+}
+
+vector<int> Membrane::sideKinds() const {
+    return ofSides(rest_, [](const ::membrane::Side& s) { return static_cast<int>(s.kind); });
+}
+
+vector<Real> Membrane::restLengths() const {
+    return ofSides(rest_, [](const ::membrane::Side& s) { return s.restLength; });
+}
+
+vector<Real> Membrane::stiffnesses() const {
+    return ofSides(rest_, [](const ::membrane::Side& s) { return s.stiffness; });
+}
+
+vector<Real> Membrane::criticalLengths() const {
+    return ofSides(rest_, [](const ::membrane::Side& s) { return s.critical; });
+}
+
+} // namespace yade

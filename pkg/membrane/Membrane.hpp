@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+#include "MembraneMat.hpp"
+#include "mechanics/RestState.hpp"
+#include <core/Body.hpp>
+#include <core/State.hpp>
+#include <lib/serialization/Serializable.hpp>
+#include <cstdint>
+#include <unordered_map>
+
+namespace yade {
+
+class Scene;
+
+class Membrane : public Serializable {
+public:
+    void postLoad(Membrane&);
+
+    const ::membrane::RestState& rest() const { return rest_; }
+    /// Index in rest().sides of the side between two bodies; -1 if there is none.
+    int sideBetween(Body::id_t a, Body::id_t b) const;
+    /// States of the nodes' bodies in the scene. Throws std::runtime_error naming a node without a body.
+    vector<shared_ptr<State>> states(Scene& scene) const;
+    /// Current positions of the nodes [m].
+    ::membrane::Points positions(Scene& scene) const;
+
+    vector<int> addBodies(const vector<Vector3r>& at, Real radius);
+    void addInteractions();
+    Real elasticEnergy() const;
+
+    boost::python::list sidesPy() const;
+    vector<int> sideKinds() const;
+    vector<Real> restLengths() const;
+    vector<Real> stiffnesses() const;
+    vector<Real> criticalLengths() const;
+    vector<Real> masses() const { return rest_.masses; }
+    vector<Real> lengths() const;
+    vector<Real> tensions() const;
+    Real area() const { return rest_.area; }
+
+    // clang-format off
+    YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Membrane, Serializable,
+        "Mesh and rest state of a membrane: a film of triangles, creases on some of its sides, and cables. The attributes are "
+        "given once, as keywords of the constructor, and checked there; everything else follows from them. Sides are numbered "
+        "film first, then cables.",
+        ((shared_ptr<MembraneMat>, material, , Attr::readonly, "Film: E [Pa], nu [-], rho [kg/m³], thickness h [m]."))
+        ((vector<Vector3r>, nodes, , Attr::readonly, "Rest positions of the N nodes [m]; only the distances in triangles and cables count."))
+        ((vector<Vector3i>, triangles, , Attr::readonly, "Nodes of each of the T triangles (0..N-1); those that share a crease must run the same way round."))
+        ((vector<Vector2i>, creases, , Attr::readonly, "Nodes of each of the C creases: sides of two triangles on a fold line."))
+        ((vector<int>, creaseSigns, , Attr::readonly, "+1 mountain, -1 valley for each crease, seen from where the triangles run counter-clockwise."))
+        ((vector<Vector2i>, cables, , Attr::readonly, "Nodes of each of the K cable segments (tethers), which bear no compression."))
+        ((vector<Real>, pointMasses, , Attr::readonly, "Mass added to each node [kg], N values >= 0, or empty."))
+        ((Real, cableStiffness, 200., Attr::readonly, "Axial stiffness EA of the cables [N], > 0."))
+        ((Real, cableDensity, 2e-4, Attr::readonly, "Mass a length of the cables [kg/m], >= 0."))
+        ((Real, alpha, 100., Attr::readonly, "Buckling parameter alpha of the film [-], >= 0, paper equation (6)."))
+        ((Real, alphaCrease, 100., Attr::readonly, "Buckling parameter alpha_c of sides on creases [-], >= 0."))
+        ((bool, allowNegativeStiffness, false, Attr::readonly, "Accept flat triangles, to which equation (5) gives a negative stiffness [-]."))
+        ((vector<int>, bodyIds, , Attr::readonly, "Body of each node; filled by addBodies."))
+        ,
+        ,
+        .add_property("sides", &Membrane::sidesPy, "Node pairs (a, b), a < b, of the S sides.")
+        .add_property("sideKinds", &Membrane::sideKinds, "Kind of each side: 0 film, 1 crease, 2 cable.")
+        .add_property("restLengths", &Membrane::restLengths, "Rest length L0 of each side [m].")
+        .add_property("stiffnesses", &Membrane::stiffnesses, "Stiffness k of each side [N/m], paper equation (5).")
+        .add_property("criticalLengths", &Membrane::criticalLengths, "Length l_cr of each side below which it is buckled [m], paper equation (6).")
+        .add_property("masses", &Membrane::masses, "Mass of each node [kg], paper equation (4), with cables and point masses.")
+        .add_property("area", &Membrane::area, "Area of the film [m²].")
+        .def("addBodies", &Membrane::addBodies, (boost::python::arg("positions") = vector<Vector3r>(), boost::python::arg("radius") = 1e-3),
+            "Add one sphere a node to the scene, without bound and with blocked rotations; returns the ids.\n\n"
+            ":param positions: where to put the nodes [m], N points; default: the rest positions\n"
+            ":param radius: of the spheres [m], > 0; it counts only for drawing and for contacts of bounded bodies")
+        .def("addInteractions", &Membrane::addInteractions, "Add one interaction a side, real from the start. Call addBodies first.")
+        .def("elasticEnergy", &Membrane::elasticEnergy, "Strain energy of all sides in the scene's present state [J].")
+        .def("lengths", &Membrane::lengths, "Present length of each side [m].")
+        .def("tensions", &Membrane::tensions, "Present elastic tension of each side [N], negative in compression.")
+    );
+    // clang-format on
+
+private:
+    ::membrane::RestState rest_;
+    std::unordered_map<std::uint64_t, int> sideOfBodies_;
+
+    void indexSides();
+};
+REGISTER_SERIALIZABLE(Membrane);
+
+} // namespace yade

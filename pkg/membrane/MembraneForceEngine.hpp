@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+#include "Membrane.hpp"
+#include "mechanics/Crease.hpp"
+#include <core/GlobalEngine.hpp>
+
+namespace yade {
+
+class MembraneForceEngine : public GlobalEngine {
+public:
+    void action() override;
+    void postLoad(MembraneForceEngine&);
+
+    /// Positions [m] and velocities [m/s] of the nodes, as this step's forces saw them.
+    const ::membrane::Points& positions() const { return x_; }
+    const ::membrane::Points& velocities() const { return v_; }
+    const vector<shared_ptr<State>>& states() const { return states_; }
+    /// Forces of this step on each node [N].
+    const ::membrane::Points& creaseForces() const { return creaseForces_; }
+    const ::membrane::Points& dampingForces() const { return dampingForces_; }
+    const ::membrane::Points& dragForces() const { return dragForces_; }
+
+    Real criticalTimeStep();
+    Real creaseEnergy(const ::membrane::Points& x) const;
+    Real creaseEnergyNow() const;
+    vector<Real> creaseAngles() const;
+    ::membrane::CreaseLaw law() const;
+
+    // clang-format off
+    YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MembraneForceEngine, GlobalEngine,
+        "Creases (7), (8), damping (9) and air drag (10) of a :yref:`Membrane`; a part whose parameter is 0 is not computed. It also "
+        "raises the faults that the functors met, refuses a time step above the critical one, and stops at the first number that is "
+        "not finite. Put it after InteractionLoop and before NewtonIntegrator.",
+        ((shared_ptr<Membrane>, membrane, , Attr::triggerPostLoad, "The membrane on which the forces act."))
+        ((Real, beta, 0., Attr::triggerPostLoad, "Crease stiffness parameter beta [-], >= 0; 0: no creases."))
+        ((Real, gamma, 100., Attr::triggerPostLoad, "Penalty factor gamma [-], >= 0, on creases whose faces passed through each other."))
+        ((Real, theta0, 0., Attr::triggerPostLoad, "Natural angle theta0 of the creases [rad], in [0, pi]; 0: closed."))
+        ((string, creaseLaw, "paper", Attr::triggerPostLoad, "'paper': equation (7) as printed; 'conservative': the gradient of an energy."))
+        ((Real, zeta, 0., Attr::triggerPostLoad, "Damping ratio zeta [-], >= 0; 0: none."))
+        ((Real, airDensity, 0., Attr::triggerPostLoad, "Density of the air [kg/m³], >= 0; 0: none."))
+        ((bool, forceTimeStep, false, , "Run even if O.dt is above criticalTimeStep()."))
+        ((Real, creasePower, 0., Attr::readonly, "Power of the crease forces in the last step [W], at the velocities half a step before."))
+        ((Real, dampingPower, 0., Attr::readonly, "Power of the damping forces in the last step [W], <= 0."))
+        ((Real, dragPower, 0., Attr::readonly, "Power of the air drag in the last step [W], <= 0."))
+        ,
+        ,
+        .def("criticalTimeStep", &MembraneForceEngine::criticalTimeStep, "Estimate of the critical time step [s] in the present state, from the actual "
+            "stiffnesses, damping, creases and masses; other contacts are not counted.")
+        .def("creaseEnergy", &MembraneForceEngine::creaseEnergyNow, "Energy [J] stored in the creases in the present state.")
+        .def("creaseAngles", &MembraneForceEngine::creaseAngles, "Present angle [rad] of each crease: 0 closed, pi flat, below 0 passed through itself.")
+    );
+    // clang-format on
+
+private:
+    vector<shared_ptr<State>> states_;
+    vector<Real> damping_; ///< c of each side [N s/m]
+    ::membrane::Points x_, v_, creaseForces_, dampingForces_, dragForces_;
+    const Scene* preparedFor_ = nullptr;
+    Real checkedStep_ = -1.;
+
+    void prepare(Scene& scene);
+    void gather();
+    void checkTimeStep();
+    void addCreases();
+    void addDamping();
+    void addDrag();
+    void scatter() const;
+};
+REGISTER_SERIALIZABLE(MembraneForceEngine);
+
+} // namespace yade

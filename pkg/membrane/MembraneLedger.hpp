@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+#include "MembraneForceEngine.hpp"
+#include <core/GlobalEngine.hpp>
+
+namespace yade {
+
+class MembraneLedger : public GlobalEngine {
+public:
+    void action() override;
+    Real balance() const;
+    Real crease() const;
+    Real total() const { return kinetic + elastic + potential; }
+
+    // clang-format off
+    YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MembraneLedger, GlobalEngine,
+        "Energies of a :yref:`Membrane` and the work done on it, all at the time of this step's forces. The leapfrog's velocities lie half a "
+        "step before and after; their mean belongs to the positions, and with it force times velocity is the change of kinetic energy to "
+        "the last digit. Works are integrals by the trapezoidal rule since the first step. Put it right after NewtonIntegrator. Nodes with "
+        "blocked translations are driven and turn about the z axis with their angVel.",
+        ((shared_ptr<MembraneForceEngine>, forces, , , "The engine of the crease, damping and drag forces."))
+        ((Vector3r, gravity, Vector3r::Zero(), , "NewtonIntegrator's gravity [m/s²]."))
+        ((bool, started, false, Attr::readonly, "Whether the first step was seen."))
+        ((Real, time, 0., Attr::readonly, "Time to which all values belong [s]."))
+        ((Real, kinetic, 0., Attr::readonly, "Kinetic energy of the free nodes [J]."))
+        ((Real, elastic, 0., Attr::readonly, "Strain energy of all sides [J]."))
+        ((Real, potential, 0., Attr::readonly, "Potential energy of gravity of the free nodes [J], 0 at the origin."))
+        ((Real, initial, 0., Attr::readonly, "kinetic + elastic + potential at the first step [J]."))
+        ((Real, creaseWork, 0., Attr::readonly, "Work of the crease forces [J]."))
+        ((Real, dampingWork, 0., Attr::readonly, "Work of the damping forces [J], <= 0."))
+        ((Real, dragWork, 0., Attr::readonly, "Work of the air drag [J], <= 0."))
+        ((Real, drivenWork, 0., Attr::readonly, "Work that driven nodes do on the membrane [J]: the spool through the tethers' ends."))
+        ((Real, contactWork, 0., Attr::readonly, "Work of all other forces on free nodes [J]: contact of the tethers with the spool."))
+        ((Real, angularMomentum, 0., Attr::readonly, "Angular momentum of the free nodes about z [N m s]."))
+        ((Real, angularImpulse, 0., Attr::readonly, "Integral of the torque about z of all forces on the free nodes [N m s]."))
+        ((Real, initialAngularMomentum, 0., Attr::readonly, "Angular momentum about z at the first step [N m s]."))
+        ((vector<Real>, lastRates, , (Attr::readonly | Attr::hidden), "Powers [W] of crease, damping, drag, driven nodes, contact; torque [N m]."))
+        ,
+        ,
+        .add_property("crease", &MembraneLedger::crease, "Energy stored in the creases [J]; with the law 'paper' and unequal heights only nearly minus creaseWork.")
+        .add_property("total", &MembraneLedger::total, "kinetic + elastic + potential [J].")
+        .add_property("balance", &MembraneLedger::balance, "total - initial - all works [J]: 0 but for the error of the time step.")
+    );
+    // clang-format on
+};
+REGISTER_SERIALIZABLE(MembraneLedger);
+
+} // namespace yade

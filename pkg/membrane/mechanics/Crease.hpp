@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace membrane {
+
+/// A crease AB between the triangles ABC and BAD, at rest. Seen from the side where the corners of ABC run
+/// counter-clockwise, a valley (sign +1) closes towards the eye and a mountain (sign -1) away from it.
+struct CreaseRest {
+    double length = 0.;  ///< l_AB [m]
+    double heightC = 0.; ///< l_CE [m], E the foot of C on AB
+    double heightD = 0.; ///< l_DF [m], F the foot of D on AB
+    double sign = 1.;    ///< +1 valley, -1 mountain
+};
+
+/// Parameters of the crease law, paper equation (7).
+struct CreaseLaw {
+    double bending = 0.;      ///< beta E J [N m], J = h³/12
+    double penalty = 100.;    ///< gamma [-], stiffens theta < 0 where the faces have passed through each other
+    double naturalAngle = 0.; ///< theta0 [rad]
+    bool conservative = false; ///< false: (7) as printed; true: minus the gradient of creaseEnergy()
+};
+
+/// Where a crease is: its angle and how that angle changes as the four nodes move.
+struct CreaseState {
+    double theta = 0.;              ///< angle between the triangles [rad], 0 closed, pi flat, in (-pi/2, 3 pi/2]
+    Eigen::Vector3d openC, openD;   ///< unit vectors along which C and D move to open the crease; 0 if collapsed
+    double heightC = 0., heightD = 0.; ///< current heights l_CE, l_DF [m]
+    double footC = 0., footD = 0.;  ///< l_AE / l_AB and l_AF / l_AB, signed: outside [0, 1] if the foot is outside AB
+};
+
+/// Forces [N] on the nodes of a crease.
+struct CreaseForces {
+    Eigen::Vector3d a, b, c, d;
+};
+
+/// Current heights and lengths below this fraction of the rest value count as collapsed: nothing is divided by them.
+constexpr double collapsedFraction = 1e-6;
+
+/// Levers 1/l_AB in (8) and 1/height in the conservative law stay below 1/(this fraction of the rest length).
+constexpr double leverFloor = 0.05;
+
+/// Angle and directions of a crease from its nodes' positions [m].
+inline CreaseState creaseState(const CreaseRest& rest, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                               const Eigen::Vector3d& c, const Eigen::Vector3d& d) {
+    CreaseState s;
+    s.openC.setZero();
+    s.openD.setZero();
+    Eigen::Vector3d axis = b - a;
+    const double length = axis.norm();
+    if (!(length > collapsedFraction * rest.length)) return s;
+    axis /= length;
+
+    const double alongC = (c - a).dot(axis), alongD = (d - a).dot(axis);
+    const Eigen::Vector3d armC = (c - a) - alongC * axis, armD = (d - a) - alongD * axis;
+    s.heightC = armC.norm();
+    s.heightD = armD.norm();
+    const double lever = std::max(length, leverFloor * rest.length);
+    s.footC = alongC / lever;
+    s.footD = alongD / lever;
+
+    // The branch cut of atan2 is moved from pi (flat) to -pi/2, away from both closed and flat.
+    constexpr double pi = 3.14159265358979323846;
+    s.theta = std::atan2(rest.sign * axis.dot(armC.cross(armD)), armC.dot(armD));
+    if (s.theta <= -0.5 * pi) s.theta += 2. * pi;
+
+    if (s.heightC > collapsedFraction * rest.heightC) s.openC = (-rest.sign / s.heightC) * axis.cross(armC);
+    if (s.heightD > collapsedFraction * rest.heightD) s.openD = (rest.sign / s.heightD) * axis.cross(armD);
+    return s;
+}
+
+/// Stiffness K [N m/rad] of a crease: beta E J l_AB / l, l the mean of the two rest heights.
+inline double creaseStiffness(const CreaseRest& rest, const CreaseLaw& law) {
+    return law.bending * rest.length / (0.5 * (rest.heightC + rest.heightD));
+}
+
+/// Energy [J] of the conservative law: K [ (theta - theta0)²/2 + (gamma - 1) min(theta, 0)²/2 ].
+/// It is also the energy of (7) where the heights are equal, uncollapsed and theta0 = 0.
+inline double creaseEnergy(const CreaseRest& rest, const CreaseLaw& law, double theta) {
+    const double open = theta - law.naturalAngle, overlap = std::min(theta, 0.);
+    return 0.5 * creaseStiffness(rest, law) * (open * open + (law.penalty - 1.) * overlap * overlap);
+}
+
+/// Forces on C and D by (7) or its conservative form, and on A and B by (8), which make the sum zero.
+inline CreaseForces creaseForces(const CreaseRest& rest, const CreaseLaw& law, const CreaseState& s) {
+    double forceC, forceD; // along openC and openD
+    if (law.conservative) {
+        const double moment =
+            -creaseStiffness(rest, law) * (s.theta - law.naturalAngle + (law.penalty - 1.) * std::min(s.theta, 0.));
+        forceC = moment / std::max(s.heightC, leverFloor * rest.heightC);
+        forceD = moment / std::max(s.heightD, leverFloor * rest.heightD);
+    } else {
+        const double gamma = s.theta >= 0. ? 1. : law.penalty;
+        const double strength = -law.bending * gamma * rest.length * (s.theta - law.naturalAngle);
+        forceC = strength / (rest.heightC * rest.heightC);
+        forceD = strength / (rest.heightD * rest.heightD);
+    }
+    CreaseForces f;
+    f.c = forceC * s.openC;
+    f.d = forceD * s.openD;
+    f.a = -(1. - s.footC) * f.c - (1. - s.footD) * f.d;
+    f.b = -s.footC * f.c - s.footD * f.d;
+    return f;
+}
+
+} // namespace membrane

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "CriticalTimeStep.hpp"
+#include "SideForce.hpp"
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace membrane {
+namespace {
+
+/// y += dt² K x + 2 dt C x for one side.
+struct TautSide {
+    int a, b;
+    Eigen::Vector3d direction;
+    double axial, lateral, damping;
+};
+
+struct StiffCrease {
+    int node[4];
+    Eigen::Vector3d gradient[4]; ///< of theta
+    double stiffness;
+};
+
+std::vector<TautSide> tautSides(const TimeStepInput& in) {
+    std::vector<TautSide> sides;
+    sides.reserve(in.rest.sides.size());
+    for (std::size_t i = 0; i < in.rest.sides.size(); ++i) {
+        const Side& s = in.rest.sides[i];
+        const Eigen::Vector3d span = in.positions[s.b] - in.positions[s.a];
+        const double length = span.norm();
+        if (!(length > 0.)) continue;
+        const double tension = sideTension(length, s.stiffness, s.restLength, s.critical);
+        sides.push_back({s.a, s.b, span / length, std::max(0., s.stiffness), std::max(0., tension / length),
+                         in.damping.empty() ? 0. : in.damping[i]});
+    }
+    return sides;
+}
+
+std::vector<StiffCrease> stiffCreases(const TimeStepInput& in) {
+    std::vector<StiffCrease> creases;
+    if (!(in.crease.bending > 0.)) return creases;
+    for (const Crease& c : in.rest.creases) {
+        const CreaseState s =
+            creaseState(c.rest, in.positions[c.a], in.positions[c.b], in.positions[c.c], in.positions[c.d]);
+        const double heightC = std::max(s.heightC, leverFloor * c.rest.heightC);
+        const double heightD = std::max(s.heightD, leverFloor * c.rest.heightD);
+        const Eigen::Vector3d gradC = s.openC / heightC, gradD = s.openD / heightD;
+        creases.push_back({{c.a, c.b, c.c, c.d},
+                           {-(1. - s.footC) * gradC - (1. - s.footD) * gradD, -s.footC * gradC - s.footD * gradD, gradC,
+                            gradD},
+                           creaseStiffness(c.rest, in.crease) * std::max(1., in.crease.penalty)});
+    }
+    return creases;
+}
+
+} // namespace
+
+double criticalTimeStep(const TimeStepInput& in) {
+    const std::size_t n = in.positions.size();
+    const std::vector<TautSide> sides = tautSides(in);
+    const std::vector<StiffCrease> creases = stiffCreases(in);
+    std::vector<double> scale(n); // 1/sqrt(m), which makes the problem symmetric; 0 holds a node
+    for (std::size_t i = 0; i < n; ++i) scale[i] = in.masses[i] > 0. ? 1. / std::sqrt(in.masses[i]) : 0.;
+
+    std::mt19937 generator(1); // fixed: the estimate must repeat
+    std::uniform_real_distribution<double> uniform(-1., 1.);
+    Points x(n), kx(n), cx(n);
+    for (auto& xi : x)
+        for (int d = 0; d < 3; ++d) xi[d] = uniform(generator);
+
+    double step = std::numeric_limits<double>::infinity();
+    constexpr int iterations = 400;
+    for (int iteration = 0; iteration < iterations; ++iteration) {
+        double norm = 0.;
+        for (std::size_t i = 0; i < n; ++i)
+            if (scale[i] == 0.) x[i].setZero();
+            else norm += x[i].squaredNorm();
+        norm = std::sqrt(norm);
+        if (!(norm > 0.)) return std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < n; ++i) {
+            x[i] *= scale[i] / norm;
+            kx[i].setZero();
+            cx[i].setZero();
+        }
+        double stiff = 0., damped = 0.; // Rayleigh quotients of K and C
+        for (const TautSide& s : sides) {
+            const Eigen::Vector3d u = x[s.b] - x[s.a];
+            const double along = s.direction.dot(u);
+            const Eigen::Vector3d force = (s.axial - s.lateral) * along * s.direction + s.lateral * u;
+            kx[s.a] -= force;
+            kx[s.b] += force;
+            const Eigen::Vector3d drag = s.damping * along * s.direction;
+            cx[s.a] -= drag;
+            cx[s.b] += drag;
+            stiff += force.dot(u);
+            damped += drag.dot(u);
+        }
+        for (const StiffCrease& c : creases) {
+            double angle = 0.;
+            for (int k = 0; k < 4; ++k) angle += c.gradient[k].dot(x[c.node[k]]);
+            for (int k = 0; k < 4; ++k) kx[c.node[k]] += c.stiffness * angle * c.gradient[k];
+            stiff += c.stiffness * angle * angle;
+        }
+        if (!(stiff > 0.)) return std::numeric_limits<double>::infinity();
+        // dt² stiff + 2 dt damped = 4
+        step = (std::sqrt(damped * damped + 4. * stiff) - damped) / stiff;
+        for (std::size_t i = 0; i < n; ++i) x[i] = scale[i] * (step * kx[i] + 2. * cx[i]);
+    }
+    return 0.99 * step;
+}
+
+} // namespace membrane

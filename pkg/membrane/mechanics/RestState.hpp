@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+#include "Crease.hpp"
+#include <Eigen/Core>
+#include <vector>
+
+namespace membrane {
+
+using Points = std::vector<Eigen::Vector3d>;
+
+/// What a membrane is made of: mesh, film, cables.
+struct MeshInput {
+    Points nodes;                           ///< rest positions [m], one a node
+    std::vector<Eigen::Vector3i> triangles; ///< node indices, consistently oriented across creases
+    std::vector<Eigen::Vector2i> creases;   ///< sides on a fold line (node indices)
+    std::vector<int> creaseSigns;           ///< +1 mountain, -1 valley, seen from the side of the triangles' normals
+    std::vector<Eigen::Vector2i> cables;    ///< segments of cables (tethers), node indices
+    std::vector<double> pointMasses;        ///< mass added to each node [kg], or empty
+    double young = 0., poisson = 0., density = 0., thickness = 0.; ///< film [Pa], [-], [kg/m³], [m]
+    double cableStiffness = 0.;             ///< EA [N]
+    double cableDensity = 0.;               ///< mass a length [kg/m]
+    double alpha = 0., alphaCrease = 0.;    ///< buckling parameter (6) of the film and of sides on creases [-]
+    bool allowNegativeStiffness = false;    ///< accept sides whose stiffness (5) is not positive
+};
+
+enum class SideKind : int { film = 0, crease = 1, cable = 2 };
+
+/// One spring of the membrane.
+struct Side {
+    int a, b;          ///< node indices, a < b
+    SideKind kind;
+    double restLength; ///< L0 [m]
+    double stiffness;  ///< k [N/m], (5) summed over the triangles of the side; EA/L0 for a cable
+    double critical;   ///< l_cr [m], (6); equal to L0 for a cable, which bears no compression
+};
+
+/// A crease: nodes A, B of the side, apices C (of the triangle that runs A to B) and D.
+struct Crease {
+    int a, b, c, d;
+    CreaseRest rest;
+};
+
+/// Everything the forces need to know of the unloaded membrane. Film sides come first, cables last.
+struct RestState {
+    std::vector<Side> sides;
+    std::vector<Crease> creases;
+    std::vector<double> masses; ///< (4) summed over triangles, plus cables and point masses [kg]
+    double area = 0.;           ///< of the film [m²]
+};
+
+/// Checks the input and computes the rest state.
+/// \throws std::invalid_argument naming the field, the value and the range that it must lie in
+RestState restState(const MeshInput& input);
+
+} // namespace membrane

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+#include <algorithm>
+#include <cmath>
+
+namespace membrane {
+
+/// Length [m] below which a side is buckled, paper equation (6): l_cr = L0 - alpha pi² h² / (12 L0), not below 0.
+/// \param restLength L0 [m] > 0;  \param alpha >= 0 [-], 0 = bears no compression;  \param thickness h [m]
+inline double criticalLength(double restLength, double alpha, double thickness) {
+    constexpr double pi = 3.14159265358979323846;
+    return std::max(0., restLength - alpha * pi * pi * thickness * thickness / (12. * restLength));
+}
+
+/// Tension [N] of a side of the given length, paper equations (3) and (6); negative in compression.
+/// Linear above the critical length, constant below it (Figure 3).
+inline double sideTension(double length, double stiffness, double restLength, double critical) {
+    return stiffness * (std::max(length, critical) - restLength);
+}
+
+/// Strain energy [J] whose derivative by the length is sideTension().
+inline double sideEnergy(double length, double stiffness, double restLength, double critical) {
+    const double stretch = std::max(length, critical) - restLength;
+    return stiffness * stretch * (0.5 * stretch + std::min(0., length - critical));
+}
+
+} // namespace membrane

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+// Boost 1.74's own headers trip over these two notices.
+#ifndef BOOST_BIND_GLOBAL_PLACEHOLDERS
+#define BOOST_BIND_GLOBAL_PLACEHOLDERS
+#endif
+#ifndef BOOST_ALLOW_DEPRECATED_HEADERS
+#define BOOST_ALLOW_DEPRECATED_HEADERS
+#endif
+
+// Python.h must precede every standard header.
+#include <boost/python/detail/wrap_python.hpp>
+
+#include <boost/preprocessor.hpp>
+#include <cstddef>
+#include <string>
+
+// What the layout of Debian's libyade 2023.02a-1 rests on, as far as a compiler can be asked.
+#if !defined(EIGEN_DONT_ALIGN) && !defined(EIGEN_DONT_VECTORIZE)
+#error "Compile with -DEIGEN_DONT_ALIGN: Debian's YADE does not align Eigen types, and State would differ in size."
+#endif
+#if !defined(__x86_64__) || !defined(__linux__)
+#error "These declarations describe Debian's amd64 build of YADE 2023.02a only."
+#endif
+#if !_GLIBCXX_USE_CXX11_ABI
+#error "Debian's YADE uses the new string ABI: compile with _GLIBCXX_USE_CXX11_ABI=1, the default."
+#endif
+#if defined(YADE_REAL_BIT) && YADE_REAL_BIT != 64
+#error "These declarations describe the build of YADE whose Real is double."
+#endif
+
+namespace yade {
+namespace abi {
+    // Specialised by YADE_ABI_LAYOUT; a class befriends its own one to have private members checked.
+    template <class Class> struct Layout;
+}
+}
+
+// YADE_ABI_LAYOUT(Class, size, ((member, offset))((member, offset))...), used in namespace yade.
+// offsetof is only conditionally supported for such classes; g++ and clang++ do support it.
+#define YADE_ABI_LAYOUT(Class, size, offsets)                                                                          \
+    _Pragma("GCC diagnostic push");                                                                                    \
+    _Pragma("GCC diagnostic ignored \"-Winvalid-offsetof\"");                                                          \
+    template <> struct abi::Layout<Class> {                                                                            \
+        static_assert(sizeof(Class) == (size), "size of " #Class " differs from YADE's");                              \
+        BOOST_PP_SEQ_FOR_EACH(YADE_ABI_OFFSET, Class, offsets)                                                         \
+    };                                                                                                                 \
+    _Pragma("GCC diagnostic pop") static_assert(true, "")
+
+#define YADE_ABI_OFFSET(r, Class, pair)                                                                                \
+    static_assert(                                                                                                     \
+        offsetof(Class, BOOST_PP_TUPLE_ELEM(2, 0, pair)) == BOOST_PP_TUPLE_ELEM(2, 1, pair),                           \
+        "offset of " BOOST_PP_STRINGIZE(Class) "::" BOOST_PP_STRINGIZE(                                                \
+            BOOST_PP_TUPLE_ELEM(2, 0, pair)) " differs from YADE's");

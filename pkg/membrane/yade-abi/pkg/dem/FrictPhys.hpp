@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <core/Dispatching.hpp>
+#include <pkg/common/ElastMat.hpp>
+#include <pkg/common/NormShearPhys.hpp>
+
+namespace yade {
+
+class FrictPhys : public NormShearPhys {
+public:
+    Real tangensOfFrictionAngle;
+
+    FrictPhys();
+    virtual ~FrictPhys();
+    YADE_ABI_SERIALIZABLE
+    YADE_ABI_INDEXABLE
+};
+
+YADE_ABI_LAYOUT(FrictPhys, 104, ((tangensOfFrictionAngle, 96)));
+YADE_ABI_SAVED(FrictPhys)
+
+}

@@ -1,0 +1,183 @@
+"""Plain geometry of triangulated surfaces: sides, lengths, areas, fold angles, crossings.
+
+Works for any mesh. Nodes are rows of an (N, 3) array in metres; triangles are (T, 3) node ids,
+counter-clockwise seen from the top side; sides and creases are (E, 2) node ids.
+"""
+
+import numpy as np
+
+MOUNTAIN = 1
+VALLEY = -1
+
+
+def unique_sides(triangles):
+    """Sides of a triangulation, each once.
+
+    Parameters
+    ----------
+    triangles : (T, 3) int
+        Corners.
+
+    Returns
+    -------
+    sides : (E, 2) int
+        Node ids, the smaller first, in lexical order.
+    triangle_sides : (T, 3) int
+        Row of `sides` of the sides (0, 1), (1, 2), (2, 0) of each triangle.
+    shares : (E,) int
+        Number of triangles at each side: 1 on an edge, 2 inside.
+    """
+    triangles = np.asarray(triangles, dtype=int).reshape(-1, 3)
+    pairs = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    sides, side_of, shares = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
+    return sides, side_of.reshape(-1, 3), shares
+
+
+def side_lengths(nodes, sides):
+    """Lengths (E,) [m] of `sides` (E, 2) between `nodes` (N, 3) [m]."""
+    return np.linalg.norm(nodes[sides[:, 1]] - nodes[sides[:, 0]], axis=1)
+
+
+def area_vectors(nodes, triangles):
+    """Area [m2] times upper unit normal, (T, 3); zero where a triangle has no area."""
+    a, b, c = (nodes[triangles[:, i]] for i in range(3))
+    return 0.5 * np.cross(b - a, c - a)
+
+
+def triangle_areas(nodes, triangles):
+    """Areas (T,) [m2], never negative."""
+    return np.linalg.norm(area_vectors(nodes, triangles), axis=1)
+
+
+def triangle_angles(nodes, triangles):
+    """Inner angles (T, 3) [rad] at the three corners; 0 at corners of a triangle without area."""
+    corners = nodes[triangles]
+    ahead = np.roll(corners, -1, axis=1) - corners
+    behind = np.roll(corners, 1, axis=1) - corners
+    sine = np.linalg.norm(np.cross(ahead, behind), axis=2)
+    return np.arctan2(sine, np.einsum("tij,tij->ti", ahead, behind))
+
+
+def crease_corners(triangles, creases):
+    """The two triangles at each crease.
+
+    Parameters
+    ----------
+    triangles : (T, 3) int
+        Corners, counter-clockwise seen from the top.
+    creases : (K, 2) int
+        Node ids A, B.
+
+    Returns
+    -------
+    (K, 4) int
+        A, B, C, D: ABC is counter-clockwise, so C lies left of A -> B, and D right of it.
+
+    Raises
+    ------
+    ValueError
+        If a crease is not shared by exactly two triangles of equal orientation.
+    """
+    triangles = np.asarray(triangles, dtype=int)
+    creases = np.asarray(creases, dtype=int).reshape(-1, 2)
+    size = 1 + max(triangles.max(), creases.max(initial=0))
+    keys = (triangles * size + np.roll(triangles, -1, axis=1)).ravel()
+    opposite = np.roll(triangles, 1, axis=1).ravel()
+    order = np.argsort(keys)
+
+    def apex(start, end):
+        wanted = start * size + end
+        first = np.searchsorted(keys[order], wanted, side="left")
+        found = np.searchsorted(keys[order], wanted, side="right") - first
+        if np.any(found != 1):
+            k = int(np.argmax(found != 1))
+            raise ValueError(
+                f"creases[{k}] = {tuple(creases[k])}: {found[k]} triangles run from node "
+                f"{start[k]} to node {end[k]}; a crease needs one in each direction"
+            )
+        return opposite[order[first]]
+
+    a, b = creases.T
+    return np.column_stack([a, b, apex(a, b), apex(b, a)])
+
+
+def crease_angles(nodes, triangles, creases, signs):
+    """Angle between the two triangles at each crease, on the inside of the fold.
+
+    Parameters
+    ----------
+    nodes : (N, 3) float
+        Positions [m].
+    triangles : (T, 3) int
+        Corners, counter-clockwise seen from the top.
+    creases : (K, 2) int
+        Node ids A, B; their order does not matter.
+    signs : (K,) int
+        MOUNTAIN (+1): the crease sticks out on the top side when folded. VALLEY (-1): below.
+
+    Returns
+    -------
+    (K,) float
+        Angles [rad] in (-pi/2, 3 pi/2]: 0 folded face to face, pi flat, negative where the two
+        faces have passed through each other.
+    """
+    signs = np.asarray(signs)
+    if not np.all(np.isin(signs, (MOUNTAIN, VALLEY))):
+        raise ValueError("signs must be +1 (mountain) or -1 (valley)")
+    a, b, c, d = (nodes[i] for i in crease_corners(triangles, creases).T)
+    along = (b - a) / np.linalg.norm(b - a, axis=1, keepdims=True)
+
+    def away(apex):
+        arm = apex - a
+        return arm - along * np.sum(arm * along, axis=1, keepdims=True)
+
+    left, right = away(c), away(d)
+    sine = -signs * np.sum(along * np.cross(left, right), axis=1)
+    angles = np.arctan2(sine, np.sum(left * right, axis=1))
+    return np.where(angles <= -np.pi / 2, angles + 2 * np.pi, angles)
+
+
+def crossings(nodes, sides, triangles):
+    """Pairs of a side and a triangle that cut each other.
+
+    A pair with a common node is never counted, nor is one that only touches in its plane.
+
+    Parameters
+    ----------
+    nodes : (N, 3) float
+        Positions [m].
+    sides : (E, 2) int
+        Node ids.
+    triangles : (T, 3) int
+        Corners.
+
+    Returns
+    -------
+    (P, 2) int
+        Rows of `sides` and of `triangles`.
+    """
+    corners = nodes[triangles]
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    found = []
+    for i, (start, end) in enumerate(nodes[sides]):
+        near = np.all((low <= np.maximum(start, end)) & (high >= np.minimum(start, end)), axis=1)
+        near &= ~np.isin(triangles, sides[i]).any(axis=1)
+        rows = np.flatnonzero(near)
+        hit = rows[_pierces(start, end, corners[rows])]
+        found.append(np.column_stack([np.full(len(hit), i), hit]))
+    return np.concatenate(found) if found else np.empty((0, 2), dtype=int)
+
+
+def _pierces(start, end, corners):
+    """Whether the side start -> end passes through each of the triangles `corners` (T, 3, 3)."""
+
+    def volume(p, q, r, s):
+        return np.sum(np.cross(q - p, r - p) * (s - p), axis=-1)
+
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    tiny = 1e-9 * np.max(np.ptp(corners, axis=1), axis=1, initial=0) ** 3
+    below, above = volume(a, b, c, start), volume(a, b, c, end)
+    split = (below * above < 0) & (np.minimum(abs(below), abs(above)) > tiny)
+    turns = [volume(start, end, *pair) for pair in ((a, b), (b, c), (c, a))]
+    same = (np.min(turns, axis=0) > 0) | (np.max(turns, axis=0) < 0)
+    return split & same

@@ -1,0 +1,187 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-2.0-or-later
+# Installs what is missing, builds what has changed, and runs the sail, the tests or the formatters.
+set -euo pipefail
+
+usage() {
+    cat <<'END'
+usage: scripts/run.sh COMMAND [options]
+
+  deploy [-j N] [options]   fold, spin up and deploy the sail, on N threads (default 1);
+                            options of scripts/deploy.py, listed by `scripts/run.sh deploy --help`
+  test [-j N] [--full]      run the tests; --full adds the long ones
+  bench [-j N] [options]    measure the speed; options of scripts/bench.py
+  build                     compile the plugin into build/python
+  format [--check]          format C++ and Python sources; --check changes nothing and fails where
+                            a file is not formatted or a linter complains
+  help                      print this
+
+Each command first installs the Debian packages it lacks. To start YADE by hand:
+  PYTHONPATH=build/python yade my_sail.py
+END
+}
+
+# Debian packages to build and run, and to format.
+run_packages=(yade python3-numpy python3-matplotlib g++ cmake make libboost-dev libeigen3-dev python3-dev)
+format_packages=(clang-format black python3-flake8 shellcheck)
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
+build=$root/build
+PATH=/usr/bin:/bin:$PATH # Debian's tools before any other of the same name
+
+say() { printf 'run.sh: %s\n' "$*" >&2; }
+die() {
+    say "$@"
+    exit 1
+}
+
+# Sets as_root to what must precede a command for it to run as root; fails if nothing does.
+find_root() {
+    if [[ $(id -u) == 0 ]]; then
+        as_root=(env)
+    elif ! command -v sudo >/dev/null; then
+        return 1
+    elif sudo -n true 2>/dev/null; then
+        as_root=(sudo -n env)
+    elif [[ -t 0 && -t 2 ]]; then
+        as_root=(sudo env) # asks for the password
+    else
+        return 1
+    fi
+}
+
+# need PACKAGE...: installs those that are missing.
+need() {
+    command -v dpkg-query >/dev/null || die "this is not Debian 12: there is no dpkg-query"
+    local status package log
+    local -a missing=() as_root=()
+    status=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "$@" 2>/dev/null || true)
+    for package in "$@"; do
+        grep -qxF "installed $package" <<<"$status" || missing+=("$package")
+    done
+    ((${#missing[@]})) || return 0
+
+    local by_hand="apt-get update && apt-get install --no-install-recommends ${missing[*]}"
+    find_root || die "packages are missing; as root, run: $by_hand"
+    local -a apt=("${as_root[@]}" DEBIAN_FRONTEND=noninteractive apt-get -qy -o DPkg::Lock::Timeout=300)
+    say "installing ${missing[*]}"
+    log=$(mktemp)
+    # The package lists may be absent or out of date: fetch them if the first attempt fails.
+    if ! "${apt[@]}" install --no-install-recommends "${missing[@]}" >"$log" 2>&1 &&
+        ! { "${apt[@]}" update && "${apt[@]}" install --no-install-recommends "${missing[@]}"; } >>"$log" 2>&1; then
+        cat "$log" >&2
+        rm "$log"
+        die "installation failed; as root, try: $by_hand"
+    fi
+    rm "$log"
+}
+
+# Configures afresh if build/ is new or was moved here from elsewhere, then lets CMake compile what has changed.
+configure_and_make() {
+    if ! { [[ -e $build/Makefile ]] && grep -qxF "CMAKE_CACHEFILE_DIR:INTERNAL=$build" "$build/CMakeCache.txt"; }; then
+        cmake --fresh -S "$root" -B "$build" -G "Unix Makefiles" -DCMAKE_BUILD_TYPE=Release || return
+    fi
+    cmake --build "$build" --parallel "$(nproc)"
+}
+
+# Brings build/ up to date: silent if it is, else shows what is compiled, and on failure everything.
+compile() {
+    need "${run_packages[@]}"
+    { mkdir -p "$build" && [[ -w $build ]]; } || die "cannot write to $build"
+    exec 9>"$build/.lock"
+    flock 9 # one build at a time
+    if ! configure_and_make 2>&1 9>&- | tee "$build/build.log" |
+        { grep --line-buffered -E '^\[ *[0-9]+%\] (Building|Linking)' >&2 || true; }; then
+        grep -vE '^(\[ *[0-9]+%\]|--) ' "$build/build.log" >&2 || true
+        die "the build failed; everything it said is in $build/build.log"
+    fi
+    exec 9>&-
+}
+
+# run_yade SCRIPT [-j N] [options]: runs a script in YADE, with the other options as its sys.argv[1:].
+run_yade() {
+    local script=$1 threads=1
+    local -a options=()
+    shift
+    while (($#)); do
+        case $1 in
+        -j)
+            threads=${2-}
+            shift
+            ;;
+        -j*) threads=${1#-j} ;;
+        *) options+=("$1") ;;
+        esac
+        shift || true
+    done
+    [[ $threads =~ ^[1-9][0-9]*$ ]] || die "-j takes the number of threads, at least 1, not '$threads'"
+    # YADE writes its settings below HOME, and stops without one.
+    if [[ ! -w ${HOME:-/nonexistent} ]]; then
+        export HOME=$build/home
+        mkdir -p "$HOME"
+    fi
+    export PYTHONPATH=$build/python${PYTHONPATH:+:$PYTHONPATH} PYTHONUNBUFFERED=1 MPLBACKEND=Agg
+    exec yade -n -x -j "$threads" "$script" "${options[@]}"
+}
+
+run_tests() {
+    # Those in C++, if any; then those in YADE, away from the caller's files.
+    if compgen -G "$root/tests/*.cpp" >/dev/null; then
+        ctest --test-dir "$build" --label-regex kernel --output-on-failure
+    fi
+    mkdir -p "$build/tests"
+    cd "$build/tests"
+    run_yade "$root/tests/run_tests.py" "$@"
+}
+
+# List the sources of a language; build/ and hidden folders are not searched.
+cpp_sources() { find "$root/pkg" "$root/tests" -name '*.[ch]pp'; }
+python_sources() { find "$root/scripts" "$root/tests" -name '*.py'; }
+
+format() {
+    need "${format_packages[@]}"
+    local -a cpp python shell=("$root/scripts/run.sh" "$root/.ci/run") black=(black -q -l 100)
+    mapfile -t cpp < <(cpp_sources)
+    mapfile -t python < <(python_sources)
+    case ${1-} in
+    '')
+        clang-format -i "${cpp[@]}"
+        "${black[@]}" "${python[@]}"
+        ;;
+    --check)
+        local failed=0
+        clang-format --dry-run -Werror "${cpp[@]}" || failed=1
+        "${black[@]}" --check --diff "${python[@]}" || failed=1
+        # E203 and W503 contradict black.
+        python3 -m flake8 -j1 --isolated --max-line-length 100 --extend-ignore E203,W503 "${python[@]}" || failed=1
+        shellcheck "${shell[@]}" || failed=1
+        ((!failed)) || die "format: see above; scripts/run.sh format mends the layout"
+        say "format: nothing to change in ${#cpp[@]} C++, ${#python[@]} Python and ${#shell[@]} shell files"
+        ;;
+    *) die "format: unknown option '$1'" ;;
+    esac
+}
+
+command=${1-help}
+shift || true
+case $command in
+deploy)
+    compile
+    run_yade "$root/scripts/deploy.py" "$@"
+    ;;
+test)
+    compile
+    run_tests "$@"
+    ;;
+bench)
+    compile
+    run_yade "$root/scripts/bench.py" "$@"
+    ;;
+build) compile ;;
+format) format "$@" ;;
+help | -h | --help) usage ;;
+*)
+    usage >&2
+    die "unknown command '$command'"
+    ;;
+esac
