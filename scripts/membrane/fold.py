@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The folded sail: a cross of four standing strips (MODEL, "Folding, spin-up, release").
 
 Every petal is folded zig-zag into a strip that stands along z: even fold lines (and the inner

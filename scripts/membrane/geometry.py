@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Plain geometry of triangulated surfaces: sides, lengths, areas, fold angles, crossings.
 
 Works for any mesh. Nodes are rows of an (N, 3) array in metres; triangles are (T, 3) node ids,

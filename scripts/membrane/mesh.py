@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The mesh of the square sail of section 3.1: four petals, fold lines, seams, tethers.
 
 Frame: spin axis +z through the origin, the flat sail in the plane z = 0. Petal 0 points along
@@ -8,6 +9,7 @@ neighbouring petals lies the diagonal seam, whose nodes both share.
 
 from dataclasses import dataclass
 from math import sqrt
+from numbers import Integral
 
 import numpy as np
 
@@ -195,7 +197,7 @@ def _check(outer_width, inner_width, fold_lines, refine, spool_radius, tether_se
     """Raise ValueError naming the first bad parameter, its value and its range."""
     counts = {"fold_lines": fold_lines, "refine": refine, "tether_segments": tether_segments}
     for name, value in counts.items():
-        if isinstance(value, bool) or value != int(value) or value < 1:
+        if not isinstance(value, Integral) or value < 1:
             raise ValueError(f"{name} = {value}: must be a whole number >= 1")
     widths = {"outer_width": outer_width, "inner_width": inner_width, "spool_radius": spool_radius}
     for name, value in widths.items():

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What is measured on the sail (MODEL, "What is measured"): plain functions of positions.
+
+Positions are (N, 3) arrays [m] in the order of the mesh's nodes, in the frame of the spin axis.
+"""
+
+import numpy as np
+
+from .geometry import triangle_areas
+
+
+def deployment_rate(mesh, positions):
+    """Area inside the outer edge, projected on the spin plane, over its flat value [-].
+
+    1 for the flat sail. The shoelace formula: parts of the loop run through clockwise count
+    negative.
+    """
+    x, y = positions[mesh.outer_edge, :2].T
+    area = 0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))
+    return float(area / mesh.outer_width**2)
+
+
+def mean_tip_radius(mesh, positions):
+    """Mean distance of the four tips from the axis [m]; flat: outer_width / sqrt(2)."""
+    return float(np.mean(_radius(positions[mesh.tips])))
+
+
+def mean_edge_middle_radius(mesh, positions):
+    """Mean distance of the outer edges' middles from the axis [m]; flat: outer_width / 2."""
+    return float(np.mean(_radius(positions[mesh.outer_edge_middles].mean(axis=1))))
+
+
+def area_strain(mesh, positions):
+    """Relative growth (T,) of the triangles' areas [-]."""
+    rest = triangle_areas(mesh.nodes, mesh.triangles)
+    return triangle_areas(positions, mesh.triangles) / rest - 1
+
+
+def tip_azimuths(mesh, positions):
+    """Azimuths (4,) of the tips [rad] in (-pi, pi], counter-clockwise from +x."""
+    x, y = positions[mesh.tips, :2].T
+    return np.arctan2(y, x)
+
+
+def nearest_turn(angle, reference):
+    """`angle` [rad] shifted by whole turns to within half a turn of `reference` [rad]."""
+    return angle - 2 * np.pi * np.round((angle - reference) / (2 * np.pi))
+
+
+def phase_difference(azimuths, spool_angles):
+    """Phase difference between each tip and the spool over time.
+
+    Parameters
+    ----------
+    azimuths : (S, 4) float
+        Azimuths of the tips [rad] at S times, the first one at release, in any turn.
+    spool_angles : (S,) float
+        Angle by which the spool has turned [rad].
+
+    Returns
+    -------
+    (S, 4) float
+        Azimuth minus spool angle [rad], continuous, 0 at release; positive = the tip leads.
+        It must change by less than half a turn from one time to the next.
+    """
+    raw = np.asarray(azimuths) - np.asarray(spool_angles)[:, None]
+    return np.unwrap(raw - raw[0], axis=0)
+
+
+def _radius(points):
+    """Distances (n,) [m] of points (n, 3) from the spin axis."""
+    return np.hypot(points[:, 0], points[:, 1])

@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Pictures of results: curves as Figures 8 and 9, shapes as Figure 7, and the folded state.
+
+Figures are drawn to files only; no window system is needed.
+"""
+
+import numpy as np
+from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
+
+from .geometry import area_vectors
+
+FILM = np.array([0.98, 0.80, 0.42])
+SPOOL = np.array([0.45, 0.48, 0.55])
+LIGHT = np.array([0.35, -0.45, 0.82]) / np.linalg.norm([0.35, -0.45, 0.82])
+VIEW = {"elev": 32, "azim": -65}
+DPI = 150
+
+
+def plot_deployment(history, path):
+    """Deployment rate and phase difference over time, one above the other.
+
+    Parameters
+    ----------
+    history : mapping of (S,) float
+        Columns `time` [s], `deployment_rate` [-], `phase_difference` [rad] (mean of the tips)
+        and `phase_difference_0` ... `phase_difference_3` [rad].
+    path : path
+        Picture to write; its ending gives the format.
+    """
+    figure = Figure(figsize=(7, 6), layout="constrained")
+    rate, phase = figure.subplots(2, 1, sharex=True)
+    time = history["time"]
+    rate.plot(time, history["deployment_rate"], color="C0")
+    rate.set(ylabel="deployment rate [-]", ylim=(0, None))
+    for tip in range(4):
+        label = "single tips" if tip == 0 else None
+        tip_phase = np.degrees(history[f"phase_difference_{tip}"])
+        phase.plot(time, tip_phase, color="C1", linewidth=0.6, alpha=0.6, label=label)
+    phase.plot(time, np.degrees(history["phase_difference"]), color="C0", label="mean")
+    phase.set(xlabel="time [s]", ylabel="phase difference [deg]")
+    phase.legend(frameon=False)
+    for axes in (rate, phase):
+        axes.grid(alpha=0.3)
+        axes.margins(x=0)
+    figure.savefig(path, dpi=DPI)
+
+
+def plot_shapes(frames, mesh, path, times):
+    """Views of the sail at up to six times, all from the same camera and at the same scale.
+
+    Parameters
+    ----------
+    frames : (S, N, 3) float
+        Positions [m], 1 <= S <= 6.
+    mesh : SailMesh
+        The sail.
+    path : path
+        Picture to write.
+    times : (S,) float
+        Times [s].
+    """
+    if not 1 <= len(frames) <= 6 or len(times) != len(frames):
+        raise ValueError(f"frames, times: {len(frames)} and {len(times)}; must be equal, 1 to 6")
+    frames = np.asarray(frames)
+    figure = Figure(figsize=(10.5, 4.8))
+    radius = np.max(np.hypot(frames[..., 0], frames[..., 1]))
+    figure.subplots_adjust(left=0, right=1, bottom=0, top=0.98, wspace=0, hspace=0)
+    for i, (positions, time) in enumerate(zip(frames, times)):
+        axes = figure.add_subplot(2, 3, i + 1, projection="3d")
+        draw_sail(axes, mesh, positions, radius)
+        axes.set_title(f"{time:.3f} s", y=0.9, fontsize=11)
+    figure.savefig(path, dpi=DPI)
+
+
+def plot_fold(mesh, positions, path):
+    """The folded state from above (whole, and the arms' beginning) and in perspective.
+
+    Parameters
+    ----------
+    mesh : SailMesh
+        The sail.
+    positions : (N, 3) float
+        Positions [m].
+    path : path
+        Picture to write.
+    """
+    figure = Figure(figsize=(15, 5.2), layout="constrained")
+    whole, middle = figure.add_subplot(1, 3, 1), figure.add_subplot(1, 3, 2)
+    for axes in (whole, middle):
+        _draw_rows(axes, mesh, positions)
+    reach = 1.1e3 * np.max(np.abs(positions[mesh.inner_corners, :2]))
+    middle.set(xlim=(0, reach), ylim=(0, reach), title="beginning of an arm [mm]")
+    whole.set_title("rows from above [mm], dark = inner edge")
+    axes = figure.add_subplot(1, 3, 3, projection="3d")
+    radius = np.max(np.hypot(positions[:, 0], positions[:, 1]))
+    draw_sail(axes, mesh, positions, radius, zoom=1.5)
+    figure.savefig(path, dpi=DPI)
+
+
+def draw_sail(axes, mesh, positions, radius, zoom=1.9):
+    """Draw the film, shaded, with tips, tethers and spool on 3-D axes reaching to `radius` [m].
+
+    `zoom` [-] enlarges the drawing within its part of the figure.
+    """
+    spool = _spool_faces(mesh.spool_radius, mesh.strip_width)
+    faces = list(positions[mesh.triangles]) + list(spool)
+    film_colours = _lambert(FILM, area_vectors(positions, mesh.triangles))
+    spool_colours = _lambert(SPOOL, np.array([np.cross(f[1] - f[0], f[2] - f[0]) for f in spool]))
+    colours = np.concatenate([film_colours, spool_colours])
+    edges = 0.8 * colours
+    style = {"facecolors": colours, "edgecolors": edges, "linewidths": 0.2, "clip_on": False}
+    axes.add_collection3d(Poly3DCollection(faces, **style))
+    cables = positions[mesh.cables]
+    axes.add_collection3d(Line3DCollection(cables, colors="0.3", linewidths=0.6, clip_on=False))
+    axes.scatter(*positions[mesh.tips].T, color="0.1", s=9, depthshade=False, clip_on=False)
+    height = 0.45 * radius
+    axes.set(xlim=(-radius, radius), ylim=(-radius, radius), zlim=(-height, height))
+    axes.set_box_aspect((1, 1, 0.45), zoom=zoom)
+    axes.view_init(**VIEW)
+    axes.set_axis_off()
+
+
+def _lambert(colour, normals):
+    """Colours (n, 3) of faces with `normals` (n, 3) of any length, lit from both sides alike."""
+    length = np.linalg.norm(normals, axis=1)
+    cosine = np.abs(normals @ LIGHT) / np.where(length > 0, length, 1)
+    return (0.45 + 0.55 * cosine)[:, None] * colour
+
+
+def _spool_faces(radius, height, facets=24):
+    """Faces of a cylinder about the axis: `facets` rectangles and a lid, each (n, 3) [m]."""
+    angle = 2 * np.pi * np.arange(facets + 1) / facets
+    ring = radius * np.column_stack([np.cos(angle), np.sin(angle), np.zeros(facets + 1)])
+    foot, head = ring - [0, 0, height / 2], ring + [0, 0, height / 2]
+    sides = [np.array([foot[i], foot[i + 1], head[i + 1], head[i]]) for i in range(facets)]
+    return sides + [head[:-1]]
+
+
+def _draw_rows(axes, mesh, positions):
+    """Draw the rows of nodes on the fold lines and edges from above [mm], dark = inner edge."""
+    plan = 1e3 * positions[:, :2]
+    lines = mesh.rows[:: mesh.refine]
+    for j, ids in enumerate(lines):
+        colour = [0.1, 0.15, 0.3] + np.array([0.85, 0.5, 0.0]) * j / len(lines)
+        for petal in ids:
+            axes.plot(*plan[petal].T, color=colour, linewidth=0.8, marker=".", markersize=2.5)
+    axes.plot(*plan[mesh.tips].T, "k.", markersize=8)
+    for chain in mesh.cables.reshape(4, -1, 2):
+        axes.plot(*plan[np.append(chain[:, 0], chain[-1, 1])].T, color="0.5", linewidth=0.8)
+    angle = np.linspace(0, 2 * np.pi, 97)
+    spool = 1e3 * mesh.spool_radius
+    axes.plot(spool * np.cos(angle), spool * np.sin(angle), color="0.5")
+    axes.set_aspect("equal")

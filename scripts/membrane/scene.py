@@ -1,0 +1,291 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""From a mesh to a running YADE scene: bodies, engines, spin-up, release."""
+
+import time
+from dataclasses import dataclass, field
+
+import numpy as np
+from yade import wrapper as yade
+
+from . import _load, spool
+
+_plugin = _load.load()
+
+
+@dataclass
+class MembraneScene:
+    """A membrane in the scene and the engines that move it.
+
+    Attributes
+    ----------
+    membrane : Membrane
+    forces : MembraneForceEngine
+    field : CentrifugalField
+        Dead except during spin-up.
+    rotation : RotationEngine
+        Turns the driven bodies; dead during spin-up.
+    newton : NewtonIntegrator
+    ledger : MembraneLedger
+        Dead during spin-up.
+    driven : list of int
+        Ids of the bodies that turn with the spool.
+    """
+
+    membrane: object
+    forces: object
+    field: object
+    rotation: object
+    newton: object
+    ledger: object
+    driven: list = field(default_factory=list)
+
+    def positions(self):
+        """Present positions of the nodes, (N, 3) [m]."""
+        bodies = yade.Omega().bodies
+        return np.array([bodies[i].state.pos for i in self.membrane.bodyIds])
+
+    def masses(self):
+        """Masses of the nodes, (N,) [kg]."""
+        return np.array(self.membrane.masses)
+
+    def hold(self, nodes, held=True):
+        """Hold `nodes` (ids in the mesh) where they are, or let them go."""
+        bodies, ids = yade.Omega().bodies, self.membrane.bodyIds
+        for node in nodes:
+            bodies[ids[node]].state.blockedDOFs = "xyzXYZ" if held else "XYZ"
+
+
+def film(young=3.2e9, poisson=0.34, density=1420.0, thickness=7.5e-6):
+    """Material of the film; the defaults are Table 1's. E [Pa], nu [-], rho [kg/m3], h [m]."""
+    return _plugin["MembraneMat"](
+        young=young, poisson=poisson, density=density, thickness=thickness
+    )
+
+
+def add_membrane(
+    nodes,
+    triangles,
+    creases=(),
+    crease_signs=(),
+    cables=(),
+    positions=None,
+    material=None,
+    radius=5e-4,
+    **options,
+):
+    """Add a membrane to the scene: one sphere a node, one interaction a side.
+
+    Parameters
+    ----------
+    nodes : (N, 3) float
+        Rest positions [m].
+    triangles : (T, 3) int
+        Node ids, counter-clockwise seen from the top.
+    creases : (C, 2) int
+        Node ids of the sides on fold lines.
+    crease_signs : (C,) int
+        +1 mountain, -1 valley.
+    cables : (K, 2) int
+        Node ids of tether segments.
+    positions : (N, 3) float, optional
+        Where to put the nodes [m]; default: `nodes`.
+    material : MembraneMat, optional
+        Default: `film()`.
+    radius : float
+        Of the spheres [m]; it counts only for contacts and for drawing.
+    **options
+        Further attributes of Membrane: alpha, alphaCrease, pointMasses, cableStiffness, …
+
+    Returns
+    -------
+    Membrane
+    """
+    membrane = _plugin["Membrane"](
+        material=material or film(),
+        nodes=np.asarray(nodes, dtype=float).tolist(),
+        triangles=np.asarray(triangles, dtype=int).tolist(),
+        creases=np.asarray(creases, dtype=int).tolist(),
+        creaseSigns=np.asarray(crease_signs, dtype=int).tolist(),
+        cables=np.asarray(cables, dtype=int).tolist(),
+        **options,
+    )
+    places = [] if positions is None else np.asarray(positions, dtype=float).tolist()
+    membrane.addBodies(places, radius)
+    membrane.addInteractions()
+    return membrane
+
+
+def set_engines(
+    membrane,
+    *,
+    driven=(),
+    touching=(),
+    omega=0.0,
+    gravity=(0.0, 0.0, 0.0),
+    beta=0.0,
+    gamma=100.0,
+    theta0=0.0,
+    crease_law="paper",
+    zeta=0.0,
+    air_density=0.0,
+    force_time_step=False,
+):
+    """Set O.engines to those that a membrane needs; each that a scene does without is left out.
+
+    Parameters
+    ----------
+    membrane : Membrane
+    driven : sequence of int
+        Ids of bodies that turn about z at `omega` [rad/s]: spool facets, ends of tethers.
+    touching : sequence of int
+        Ids of the membrane's bodies that touch other bodies; empty: no collider at all.
+    gravity : 3 floats
+        [m/s2].
+    beta, gamma, theta0, crease_law, zeta, air_density
+        Attributes of MembraneForceEngine.
+    force_time_step : bool
+        Run even above the critical time step.
+
+    Returns
+    -------
+    MembraneScene
+    """
+    scene = yade.Omega()
+    forces = _plugin["MembraneForceEngine"](
+        membrane=membrane,
+        beta=beta,
+        gamma=gamma,
+        theta0=theta0,
+        creaseLaw=crease_law,
+        zeta=zeta,
+        airDensity=air_density,
+        forceTimeStep=force_time_step,
+    )
+    geometry = [_plugin["Ig2_Sphere_Sphere_MembraneGeom"]()]
+    physics = [_plugin["Ip2_MembraneMat_MembraneMat_MembranePhys"](membrane=membrane)]
+    laws = [_plugin["Law2_MembraneGeom_MembranePhys_Buckling"]()]
+    collider = []
+    if touching:
+        for body in (scene.bodies[i] for i in touching):
+            body.bounded, body.mask = True, spool.TETHER_MASK
+        bounds = [yade.Bo1_Sphere_Aabb(), yade.Bo1_Facet_Aabb()]
+        collider = [
+            yade.InsertionSortCollider(
+                bounds, verletDist=2e-3, avoidSelfInteractionMask=spool.NO_SELF_CONTACT
+            )
+        ]
+        geometry.append(yade.Ig2_Facet_Sphere_ScGeom())
+        physics.append(yade.Ip2_FrictMat_FrictMat_FrictPhys())
+        laws.append(yade.Law2_ScGeom_FrictPhys_CundallStrack())
+    rotation = yade.RotationEngine(
+        ids=list(driven),
+        angularVelocity=omega,
+        rotationAxis=(0, 0, 1),
+        rotateAroundZero=True,
+        zeroPoint=(0, 0, 0),
+        dead=not driven,
+    )
+    centrifugal = _plugin["CentrifugalField"](membrane=membrane, omega=omega, dead=True)
+    newton = yade.NewtonIntegrator(damping=0, gravity=gravity)
+    ledger = _plugin["MembraneLedger"](forces=forces, gravity=gravity)
+    scene.engines = [
+        yade.ForceResetter(),
+        *collider,
+        rotation,
+        yade.InteractionLoop(geometry, physics, laws),
+        centrifugal,
+        forces,
+        newton,
+        ledger,
+    ]
+    return MembraneScene(membrane, forces, centrifugal, rotation, newton, ledger, list(driven))
+
+
+def advance(steps):
+    """Run `steps` steps and wait for them. Raises what an engine raised."""
+    scene = yade.Omega()
+    target = scene.iter + steps
+    scene.run(steps)
+    while scene.iter < target:  # O.wait() alone looks only every 40 ms
+        if not scene.running:
+            scene.wait()  # raises what ended the run
+        time.sleep(2e-4)
+    scene.wait()
+
+
+def set_spin(sail, omega):
+    """Let all nodes turn about z at `omega` [rad/s]: v = omega x r.
+
+    The leapfrog's velocities belong to the time half a step before the positions.
+    """
+    scene = yade.Omega()
+    half = -0.5 * omega * scene.dt
+    for i in sail.membrane.bodyIds:
+        state = scene.bodies[i].state
+        x, y, _ = state.pos
+        x, y = x * np.cos(half) - y * np.sin(half), x * np.sin(half) + y * np.cos(half)
+        state.vel = (-omega * y, omega * x, 0.0)
+
+
+def residual_energy(sail, omega):
+    """Kinetic energy in the turning frame over that of the spin, 1/2 sum m omega2 r2 [-]."""
+    bodies = yade.Omega().bodies
+    states = [bodies[i].state for i in sail.membrane.bodyIds]
+    mass = sail.masses()
+    speed2 = np.sum(np.array([s.vel for s in states]) ** 2, axis=1)
+    radius2 = np.sum(np.array([s.pos for s in states])[:, :2] ** 2, axis=1)
+    return float(np.sum(mass * speed2) / (omega**2 * np.sum(mass * radius2)))
+
+
+def spin_up(
+    sail, omega, *, tolerance=1e-6, damping=0.3, batch=2000, max_time=5.0, on_batch=None
+):
+    """Bring the sail to rest in a frame that turns at `omega` [rad/s] (MODEL, folding step 3).
+
+    Parameters
+    ----------
+    sail : MembraneScene
+        Its guide nodes and tether ends must be held.
+    tolerance : float
+        Ends when `residual_energy` has stayed below it for two batches.
+    damping : float
+        NewtonIntegrator's local damping meanwhile, in (0, 1).
+    batch : int
+        Steps between two looks.
+    max_time : float
+        Simulated time [s] after which to give up with RuntimeError.
+    on_batch : callable, optional
+        Called with (simulated time, residual) after each batch.
+
+    Returns
+    -------
+    dict
+        simulated time [s], steps, residual [-].
+    """
+    scene = yade.Omega()
+    engines = {sail.field: False, sail.rotation: True, sail.ledger: True}
+    for engine, dead in engines.items():
+        engine.dead = dead
+    sail.field.omega, sail.newton.damping = omega, damping
+    steps, calm, residual = 0, 0, float("inf")
+    while calm < 2:
+        if steps * scene.dt > max_time:
+            raise RuntimeError(
+                f"spin-up found no equilibrium in {max_time} s: residual energy {residual:.3g}, "
+                f"wanted {tolerance:.3g}"
+            )
+        advance(batch)
+        steps += batch
+        residual = residual_energy(sail, omega)
+        calm = calm + 1 if residual < tolerance else 0
+        if on_batch:
+            on_batch(steps * scene.dt, residual)
+    return {"time": steps * scene.dt, "steps": steps, "residual": residual}
+
+
+def release(sail, omega, held):
+    """Go over to the inertial frame and let the `held` nodes go (MODEL, folding step 4)."""
+    sail.field.dead, sail.rotation.dead, sail.ledger.dead = True, False, False
+    sail.newton.damping = 0
+    sail.hold(held, False)
+    set_spin(sail, omega)

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The central spool: a cylinder of YADE facets about the z axis (paper, section 3.3)."""
+
+from math import cos, pi, sin
+
+from yade import utils
+from yade.wrapper import FrictMat, Omega
+
+SPOOL_MASK = 0b010
+TETHER_MASK = 0b110
+# Bodies of one and the same mask that share a bit with this one do not collide with one another:
+# neither tether masses nor facets.
+NO_SELF_CONTACT = 0b110
+
+
+def add_spool(radius=0.025, height=0.06, facets=36, young=1e6, friction_angle=0.3):
+    """Add the spool to the scene.
+
+    Parameters
+    ----------
+    radius : float
+        Of the cylinder through the facets' corners [m], > 0.
+    height : float
+        From -height/2 to height/2 [m], > 0.
+    facets : int
+        Flat faces around the axis, >= 3; each is two triangles.
+    young : float
+        Of the contact with tether masses [Pa], > 0. Half as stiff as 2 young times their radius.
+    friction_angle : float
+        Between tethers and spool [rad], >= 0.
+
+    Returns
+    -------
+    list of int
+        Ids of the facets.
+    """
+    for name, value in {"radius": radius, "height": height, "young": young}.items():
+        if not value > 0:
+            raise ValueError(f"spool: {name} = {value} must be > 0")
+    if facets < 3:
+        raise ValueError(f"spool: facets = {facets} must be >= 3")
+    if friction_angle < 0:
+        raise ValueError(f"spool: friction_angle = {friction_angle} rad must be >= 0")
+    scene = Omega()
+    material = FrictMat(young=young, poisson=0.3, frictionAngle=friction_angle, density=1000)
+    scene.materials.append(material)
+    angles = [2 * pi * k / facets for k in range(facets + 1)]
+    rim = [(radius * cos(a), radius * sin(a)) for a in angles]
+    half = height / 2
+    ids = []
+    for (x1, y1), (x2, y2) in zip(rim, rim[1:]):
+        low1, low2, high1, high2 = (x1, y1, -half), (x2, y2, -half), (x1, y1, half), (x2, y2, half)
+        for corners in ((low1, low2, high2), (low1, high2, high1)):
+            facet = utils.facet(corners, material=material, mask=SPOOL_MASK)
+            ids.append(scene.bodies.append(facet))
+    return ids
