@@ -6,9 +6,10 @@ edge) at its foot, odd ones at its head. The strip is bent over its guide bar, a
 run outwards along the diagonals, side by side with the neighbours' halves.
 
 Each row of nodes follows the petal's centre line at an offset of its own, so that layers lie
-`layer_gap` apart: row 0 innermost, the outer edge outermost. On the straight parts of the centre
-line all sides keep their length. Where it turns into the diagonal the outer layers take the inner
-lane and sides across the turn become chords: there the film buckles, and is never stretched.
+`layer_gap` apart: row 0 innermost, the outer edge outermost. Along the arms each row draws nearer
+to the diagonal, on which its seam node lies. On the straight parts of the centre line all sides
+keep their length. Where it turns into the diagonal the outer layers take the inner lane and sides
+across the turn become chords: there the film buckles, and is hardly stretched anywhere.
 """
 
 from dataclasses import dataclass
@@ -32,9 +33,10 @@ def fold(mesh, bar_radius=0.030, arm_radius=0.040, layer_gap=1e-4):
     bar_radius : float
         Distance of the guide bars from the axis [m], more than the spool's radius.
     arm_radius : float
-        Radius on the diagonal at which the strips' centre lines reach it [m].
+        Radius at which the strips' centre lines would reach the diagonal in a sharp corner [m],
+        more than bar_radius / sqrt(2); the corner is rounded by twice the stack's thickness.
     layer_gap : float
-        Distance between neighbouring layers [m].
+        Distance between neighbouring layers [m], less than a twentieth of the strip width.
 
     Returns
     -------
@@ -229,6 +231,11 @@ def _check(mesh, bar_radius, arm_radius, layer_gap):
 
 def _check_fit(mesh, line, arm_radius):
     """Raise ValueError if the strip would cut the spool or bend where it cannot."""
+    if line.turn >= pi / 2:
+        raise ValueError(
+            f"arm_radius = {arm_radius} m: must be > {line.bar / sqrt(2):.6g} m, "
+            "bar_radius / sqrt(2)"
+        )
     if line.straight <= 0:
         raise ValueError(
             f"arm_radius = {arm_radius} m: no room for the bend between bar and arm; raise it"

@@ -70,3 +70,34 @@ def phase_difference(azimuths, spool_angles):
 def _radius(points):
     """Distances (n,) [m] of points (n, 3) from the spin axis."""
     return np.hypot(points[:, 0], points[:, 1])
+
+
+def first_time_above(time, values, level):
+    """First of the times (S,) at which `values` (S,) exceed `level`; None if they never do."""
+    above = np.flatnonzero(np.asarray(values) > level)
+    return float(time[above[0]]) if len(above) else None
+
+
+def swing(time, phase):
+    """How far and how fast the tips swing against the spool.
+
+    Parameters
+    ----------
+    time : (S,) float
+        Times since the release [s].
+    phase : (S,) float
+        Mean phase difference [rad].
+
+    Returns
+    -------
+    dict
+        `largest_lag` [rad] and its `time_of_largest_lag` [s]; `return_time` [s] when the phase
+        difference first comes back to zero after it, None if it does not.
+    """
+    lag = int(np.argmin(phase))
+    back = np.flatnonzero(np.asarray(phase[lag:]) >= 0)
+    return {
+        "largest_lag": float(-phase[lag]),
+        "time_of_largest_lag": float(time[lag]),
+        "return_time": float(time[lag + back[0]]) if len(back) else None,
+    }

@@ -237,9 +237,7 @@ def residual_energy(sail, omega):
     return float(np.sum(mass * speed2) / (omega**2 * np.sum(mass * radius2)))
 
 
-def spin_up(
-    sail, omega, *, tolerance=1e-6, damping=0.3, batch=2000, max_time=5.0, on_batch=None
-):
+def spin_up(sail, omega, *, tolerance=1e-6, damping=0.3, batch=2000, max_time=5.0, on_batch=None):
     """Bring the sail to rest in a frame that turns at `omega` [rad/s] (MODEL, folding step 3).
 
     Parameters

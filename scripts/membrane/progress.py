@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Progress of long work on the terminal: percentage, simulated time, speed, time left."""
+
+import sys
+import time
+
+
+class Progress:
+    """Prints a line now and then: rewritten in place on a terminal, every 10 % elsewhere.
+
+    Parameters
+    ----------
+    label : str
+    total : float
+        Simulated time [s] at the end.
+    stream : file, optional
+        Default: standard error.
+    """
+
+    def __init__(self, label, total, stream=None):
+        self.label, self.total, self.stream = label, total, stream or sys.stderr
+        self.start, self.shown, self.tenth = time.monotonic(), 0.0, -1
+
+    def update(self, done, note=""):
+        """Tell that simulated time `done` [s] is reached."""
+        wall = max(time.monotonic() - self.start, 1e-9)
+        left = (self.total - done) * wall / done if done > 0 else 0.0
+        text = (
+            f"t = {done:.3f} of {self.total:g} s  {done / wall:.3g} simulated s per s  "
+            f"{left:.0f} s left{note}"
+        )
+        self.show(done / self.total if self.total > 0 else 1.0, text)
+
+    def show(self, share, text):
+        """Tell that `share` (0 to 1) of the work is done."""
+        now, live, tenth = time.monotonic(), self.stream.isatty(), int(10 * share)
+        if share < 1 and (now - self.shown < 0.2 if live else tenth == self.tenth):
+            return
+        self.shown, self.tenth = now, tenth
+        line = f"{self.label} {100 * share:3.0f} %  {text}"
+        self.stream.write(f"\r\033[K{line}" if live else f"{line}\n")
+        if live and share >= 1:
+            self.stream.write("\n")
+        self.stream.flush()
