@@ -84,7 +84,11 @@ vector<shared_ptr<State>> Membrane::states(Scene& scene) const {
     return states;
 }
 
-::membrane::Points Membrane::positions(Scene& scene) const {
+::membrane::Points Membrane::positions(Scene& scene, const vector<Vector3r>& given) const {
+    if (given.size() == nodes.size()) return given;
+    if (!given.empty())
+        throw std::invalid_argument("Membrane: positions has " + std::to_string(given.size()) + " points; it must have one for each of the " +
+                                    std::to_string(nodes.size()) + " nodes");
     ::membrane::Points x;
     x.reserve(nodes.size());
     for (const auto& state : states(scene)) x.push_back(state->pos);
@@ -151,13 +155,13 @@ Real Membrane::elasticEnergy() const {
     return energy;
 }
 
-vector<Real> Membrane::lengths() const {
-    const ::membrane::Points x = positions(*Omega::instance().getScene());
+vector<Real> Membrane::lengths(const vector<Vector3r>& at) const {
+    const ::membrane::Points x = positions(*Omega::instance().getScene(), at);
     return ofSides(rest_, [&x](const ::membrane::Side& s) -> Real { return (x[s.b] - x[s.a]).norm(); });
 }
 
-vector<Real> Membrane::tensions() const {
-    const ::membrane::Points x = positions(*Omega::instance().getScene());
+vector<Real> Membrane::tensions(const vector<Vector3r>& at) const {
+    const ::membrane::Points x = positions(*Omega::instance().getScene(), at);
     return ofSides(rest_, [&x](const ::membrane::Side& s) -> Real {
         return ::membrane::sideTension((x[s.b] - x[s.a]).norm(), s.stiffness, s.restLength, s.critical);
     });

@@ -21,8 +21,8 @@ public:
     int sideBetween(Body::id_t a, Body::id_t b) const;
     /// States of the nodes' bodies in the scene. Throws std::runtime_error naming a node without a body.
     vector<shared_ptr<State>> states(Scene& scene) const;
-    /// Current positions of the nodes [m].
-    ::membrane::Points positions(Scene& scene) const;
+    /// `given` if it has a point for each node, the present positions in the scene if it is empty [m].
+    ::membrane::Points positions(Scene& scene, const vector<Vector3r>& given = {}) const;
 
     vector<int> addBodies(const vector<Vector3r>& at, Real radius);
     void addInteractions();
@@ -34,8 +34,8 @@ public:
     vector<Real> stiffnesses() const;
     vector<Real> criticalLengths() const;
     vector<Real> masses() const { return rest_.masses; }
-    vector<Real> lengths() const;
-    vector<Real> tensions() const;
+    vector<Real> lengths(const vector<Vector3r>& at) const;
+    vector<Real> tensions(const vector<Vector3r>& at) const;
     Real area() const { return rest_.area; }
 
     // clang-format off
@@ -71,8 +71,10 @@ public:
             ":param radius: of the spheres [m], > 0; it counts only for drawing and for contacts of bounded bodies")
         .def("addInteractions", &Membrane::addInteractions, "Add one interaction a side, real from the start. Call addBodies first.")
         .def("elasticEnergy", &Membrane::elasticEnergy, "Strain energy of all sides in the scene's present state [J].")
-        .def("lengths", &Membrane::lengths, "Present length of each side [m].")
-        .def("tensions", &Membrane::tensions, "Present elastic tension of each side [N], negative in compression.")
+        .def("lengths", &Membrane::lengths, (boost::python::arg("positions") = vector<Vector3r>()), "Length of each side [m] at given positions of "
+            "the N nodes [m]; default: the present ones.")
+        .def("tensions", &Membrane::tensions, (boost::python::arg("positions") = vector<Vector3r>()), "Elastic tension of each side [N], negative in "
+            "compression, at given positions of the N nodes [m]; default: the present ones.")
     );
     // clang-format on
 

@@ -182,9 +182,9 @@ Real MembraneForceEngine::creaseEnergyNow() const {
     return creaseEnergy(membrane->positions(*Omega::instance().getScene()));
 }
 
-vector<Real> MembraneForceEngine::creaseAngles() const {
+vector<Real> MembraneForceEngine::creaseAngles(const vector<Vector3r>& at) const {
     if (!membrane) throw std::runtime_error("MembraneForceEngine: membrane is not set");
-    const ::membrane::Points x = membrane->positions(*Omega::instance().getScene());
+    const ::membrane::Points x = membrane->positions(*Omega::instance().getScene(), at);
     vector<Real> angles;
     for (const ::membrane::Crease& c : membrane->rest().creases)
         angles.push_back(::membrane::creaseState(c.rest, x[c.a], x[c.b], x[c.c], x[c.d]).theta);

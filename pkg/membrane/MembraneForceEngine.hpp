@@ -13,6 +13,7 @@ public:
 
     /// Positions [m] and velocities [m/s] of the nodes, as this step's forces saw them.
     const ::membrane::Points& positions() const { return x_; }
+    vector<Vector3r> lastPositions() const { return x_; }
     const ::membrane::Points& velocities() const { return v_; }
     const vector<shared_ptr<State>>& states() const { return states_; }
     /// Forces of this step on each node [N].
@@ -23,7 +24,7 @@ public:
     Real criticalTimeStep();
     Real creaseEnergy(const ::membrane::Points& x) const;
     Real creaseEnergyNow() const;
-    vector<Real> creaseAngles() const;
+    vector<Real> creaseAngles(const vector<Vector3r>& at) const;
     ::membrane::CreaseLaw law() const;
 
     // clang-format off
@@ -47,7 +48,10 @@ public:
         .def("criticalTimeStep", &MembraneForceEngine::criticalTimeStep, "Estimate of the critical time step [s] in the present state, from the actual "
             "stiffnesses, damping, creases and masses; other contacts are not counted.")
         .def("creaseEnergy", &MembraneForceEngine::creaseEnergyNow, "Energy [J] stored in the creases in the present state.")
-        .def("creaseAngles", &MembraneForceEngine::creaseAngles, "Present angle [rad] of each crease: 0 closed, pi flat, below 0 passed through itself.")
+        .def("creaseAngles", &MembraneForceEngine::creaseAngles, (boost::python::arg("positions") = vector<Vector3r>()), "Angle [rad] of each crease: 0 "
+            "closed, pi flat, below 0 passed through itself; at given positions of the N nodes [m], default: the present ones.")
+        .def("lastPositions", &MembraneForceEngine::lastPositions, "Positions [m] of the nodes as the last step's forces saw them, before the "
+            "integrator moved them; empty before the first step.")
     );
     // clang-format on
 

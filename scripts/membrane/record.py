@@ -77,8 +77,8 @@ class Recorder:
         return np.array([row[tuple(sorted(pair))] for pair in creases.tolist()], dtype=int)
 
     def history(self, time):
-        """Append the measures at `time` [s] since the release."""
-        x = self.sail.positions()
+        """Append the measures of the last step, whose forces acted `time` [s] after the release."""
+        x = np.array(self.sail.forces.lastPositions())
         self._azimuths.append(measures.tip_azimuths(self.mesh, x))
         turned = self.spin_rate * np.array([row["time"] for row in self.rows] + [time])
         phases = measures.phase_difference(np.array(self._azimuths), turned)[-1]
@@ -110,13 +110,13 @@ class Recorder:
         return row
 
     def shape(self, time):
-        """Append the shape at `time` [s] to the ParaView series."""
-        x = self.sail.positions()
+        """Append the shape of the last step, at `time` [s], to the ParaView series."""
+        x = np.array(self.sail.forces.lastPositions())
         length = np.linalg.norm(x[self._sides[:, 1]] - x[self._sides[:, 0]], axis=1)
         angle = np.full(len(self._sides), np.pi)
-        angle[self._crease_rows] = self.sail.forces.creaseAngles()
+        angle[self._crease_rows] = self.sail.forces.creaseAngles(x.tolist())
         side_data = {
-            "force": np.array(self.sail.membrane.tensions()),
+            "force": np.array(self.sail.membrane.tensions(x.tolist())),
             "strain": length / self._rest - 1,
             "buckled": (length < self._critical).astype(int),
             "crease_angle": angle,

@@ -105,7 +105,7 @@ def run(mesh, sail, p, recorder):
     rows = max(1, round(p.duration / (stride * p.dt)))
     between = round(p.shapes_interval / (stride * p.dt)) if p.shapes_interval > 0 else 0
     progress = Progress("deploying", p.duration)
-    scene.advance(1)  # the ledger opens with the first step
+    scene.advance(1)  # a step's measures belong to the time at which it began
     recorder.history(0.0)
     recorder.shape(0.0)
     for row in range(1, rows + 1):
@@ -168,7 +168,7 @@ def deploy(p, folder, pictures=True):
             "triangles": len(mesh.triangles),
             "sides": len(sail.membrane.sides),
             "creases": len(mesh.creases),
-            "film_mass": float(np.sum(sail.masses()) - 4 * p.tip_mass),
+            "film_mass": p.density * p.thickness * sail.membrane.area,
         },
         "fold": report,
         "critical_time_step": critical,
@@ -190,16 +190,21 @@ def deploy(p, folder, pictures=True):
 
 
 def draw(mesh, recorder, history, folder):
-    """Write deployment.png, and shapes.png with six instants spread over the run."""
+    """Write deployment.png, and shapes.png with six instants up to the fullest deployment."""
     plots.plot_deployment(history, folder / "deployment.png")
-    picks = six_instants(np.array(recorder.frame_times))
+    times = np.array(recorder.frame_times)
+    rates = [measures.deployment_rate(mesh, x) for x in recorder.frames]
+    picks = instants(times, int(np.argmax(rates)))
     frames = [recorder.frames[i] for i in picks]
-    plots.plot_shapes(frames, mesh, folder / "shapes.png", [recorder.frame_times[i] for i in picks])
+    plots.plot_shapes(frames, mesh, folder / "shapes.png", times[picks])
 
 
-def six_instants(times):
-    """Indices of up to six of the `times` (S,), closer together early, where more happens."""
-    wanted = times[-1] * (np.arange(6) / 5) ** 2
+def instants(times, last):
+    """Indices of up to six of the `times` (S,) up to the one at index `last`.
+
+    They lie closer together early, where more happens.
+    """
+    wanted = times[last] * (np.arange(6) / 5) ** 1.5
     return np.unique([int(np.argmin(np.abs(times - t))) for t in wanted])
 
 

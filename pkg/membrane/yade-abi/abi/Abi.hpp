@@ -32,10 +32,10 @@
 
 namespace yade {
 namespace abi {
-    // Specialised by YADE_ABI_LAYOUT; a class befriends its own one to have private members checked.
-    template <class Class> struct Layout;
-}
-}
+// Specialised by YADE_ABI_LAYOUT; a class befriends its own one to have private members checked.
+template <class Class> struct Layout;
+} // namespace abi
+} // namespace yade
 
 // YADE_ABI_LAYOUT(Class, size, ((member, offset))((member, offset))...), used in namespace yade.
 // offsetof is only conditionally supported for such classes; g++ and clang++ do support it.
@@ -43,13 +43,20 @@ namespace abi {
     _Pragma("GCC diagnostic push");                                                                                    \
     _Pragma("GCC diagnostic ignored \"-Winvalid-offsetof\"");                                                          \
     template <> struct abi::Layout<Class> {                                                                            \
+        using Checked = Class;                                                                                         \
         static_assert(sizeof(Class) == (size), "size of " #Class " differs from YADE's");                              \
-        BOOST_PP_SEQ_FOR_EACH(YADE_ABI_OFFSET, Class, offsets)                                                         \
+        BOOST_PP_SEQ_FOR_EACH(YADE_ABI_OFFSET, ~, offsets)                                                             \
     };                                                                                                                 \
     _Pragma("GCC diagnostic pop") static_assert(true, "")
+#define YADE_ABI_OFFSET(r, data, pair) YADE_ABI_OFFSET_OF pair
+#define YADE_ABI_OFFSET_OF(member, offset)                                                                             \
+    static_assert(offsetof(Checked, member) == (offset), "offset of " #member " differs from YADE's");
 
-#define YADE_ABI_OFFSET(r, Class, pair)                                                                                \
-    static_assert(                                                                                                     \
-        offsetof(Class, BOOST_PP_TUPLE_ELEM(2, 0, pair)) == BOOST_PP_TUPLE_ELEM(2, 1, pair),                           \
-        "offset of " BOOST_PP_STRINGIZE(Class) "::" BOOST_PP_STRINGIZE(                                                \
-            BOOST_PP_TUPLE_ELEM(2, 0, pair)) " differs from YADE's");
+// A class derived from Class starts with its first member at `offset`, within padding that sizeof(Class) counts.
+#define YADE_ABI_TAIL(Class, offset)                                                                                   \
+    namespace abi {                                                                                                    \
+    struct After##Class : Class {                                                                                      \
+        char first;                                                                                                    \
+    };                                                                                                                 \
+    }                                                                                                                  \
+    YADE_ABI_LAYOUT(abi::After##Class, sizeof(Class), ((first, offset)))

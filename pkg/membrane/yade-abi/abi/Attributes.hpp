@@ -29,31 +29,31 @@
 #define YADE_ABI_INITIALIZE(s, data, init) BOOST_PP_TUPLE_ELEM(2, 0, init)(BOOST_PP_TUPLE_ELEM(2, 1, init))
 #define YADE_ABI_SAVE(r, archive, attr)                                                                                \
     if (!(YADE_ABI_FLAGS(attr) & ::yade::Attr::noSave))                                                                \
-        archive& ::boost::serialization::make_nvp(YADE_ABI_NAME_TEXT(attr), YADE_ABI_NAME(attr));
+        archive& ::boost::serialization::make_nvp(YADE_ABI_NAME_TEXT(attr), this->YADE_ABI_NAME(attr));
 #define YADE_ABI_SET(r, data, attr)                                                                                    \
     if (key == YADE_ABI_NAME_TEXT(attr)) {                                                                             \
-        YADE_ABI_NAME(attr) = ::boost::python::extract<decltype(YADE_ABI_NAME(attr))>(value)();                        \
+        this->YADE_ABI_NAME(attr) = ::boost::python::extract<decltype(this->YADE_ABI_NAME(attr))>(value)();            \
         return;                                                                                                        \
     }
 #define YADE_ABI_TO_DICT(r, dict, attr)                                                                                \
     if (!(YADE_ABI_FLAGS(attr) & ::yade::Attr::hidden))                                                                \
-        dict[YADE_ABI_NAME_TEXT(attr)] = ::boost::python::object(YADE_ABI_NAME(attr));
+        dict[YADE_ABI_NAME_TEXT(attr)] = ::boost::python::object(this->YADE_ABI_NAME(attr));
 #define YADE_ABI_TO_PYTHON(r, Class, attr)                                                                             \
-    ::yade::abi::defineAttribute<YADE_ABI_FLAGS(attr)>(                                                                \
-        _classObj, YADE_ABI_NAME_TEXT(attr), &Class::YADE_ABI_NAME(attr), YADE_ABI_FULL_DOC(attr));
+    ::yade::abi::defineAttribute<YADE_ABI_FLAGS(attr)>(_classObj, YADE_ABI_NAME_TEXT(attr),                            \
+                                                       &Class::YADE_ABI_NAME(attr), YADE_ABI_FULL_DOC(attr));
 
 // `: name(default), ...`, or nothing; initializers of YADE_CLASS_BASE_DOC_ATTRS_INIT_CTOR_PY come first
 #define YADE_ABI_INITIALIZERS(inits)                                                                                   \
     BOOST_PP_IF(BOOST_PP_SEQ_SIZE(inits), YADE_ABI_INITIALIZERS_SOME, BOOST_PP_TUPLE_EAT(1))(inits)
 #define YADE_ABI_INITIALIZERS_SOME(inits) : BOOST_PP_SEQ_ENUM(BOOST_PP_SEQ_TRANSFORM(YADE_ABI_INITIALIZE, ~, inits))
 #define YADE_ABI_ALL_INITIALIZERS(inits, attrs)                                                                        \
-    inits BOOST_PP_IF(BOOST_PP_SEQ_SIZE(attrs), BOOST_PP_SEQ_TRANSFORM, BOOST_PP_TUPLE_EAT(3))(                        \
-        YADE_ABI_AS_INITIALIZER, ~, attrs)
+    inits BOOST_PP_IF(BOOST_PP_SEQ_SIZE(attrs), BOOST_PP_SEQ_TRANSFORM,                                                \
+                      BOOST_PP_TUPLE_EAT(3))(YADE_ABI_AS_INITIALIZER, ~, attrs)
 
 namespace yade {
 
 namespace Attr {
-    enum flags { noSave = 1, readonly = 2, triggerPostLoad = 4, hidden = 8, noResize = 16 };
+enum flags { noSave = 1, readonly = 2, triggerPostLoad = 4, hidden = 8, noResize = 16 };
 }
 
 // Called around saving and loading; a class intercepts one by a member function of the same name and parameter.
@@ -63,67 +63,63 @@ template <typename T> void preSave(T&) {}
 template <typename T> void postSave(T&) {}
 
 namespace abi {
-    // Python may change a component of these in place, as in state.vel[2] = 0; of anything else it gets a copy.
-    template <class T> struct GivenByReference : std::false_type {};
-    template <> struct GivenByReference<Vector2i> : std::true_type {};
-    template <> struct GivenByReference<Vector2r> : std::true_type {};
-    template <> struct GivenByReference<Vector3i> : std::true_type {};
-    template <> struct GivenByReference<Vector3r> : std::true_type {};
-    template <> struct GivenByReference<Quaternionr> : std::true_type {};
-    template <> struct GivenByReference<Matrix3r> : std::true_type {};
+namespace py = ::boost::python;
 
-    template <int flags, class PythonClass, class Class, class T>
-    void defineAttribute(PythonClass& pythonClass, const char* name, T Class::*attribute, string doc)
-    {
-        namespace py = ::boost::python;
-        if constexpr (!(flags & Attr::hidden)) {
-            using Policy = std::conditional_t<
-                GivenByReference<T>::value, py::return_internal_reference<>, py::return_value_policy<py::return_by_value>>;
-            doc += " :yattrflags:`" + std::to_string(flags) + "` ";
-            const py::object getter = py::make_getter(attribute, Policy());
-            if constexpr (flags & Attr::readonly) {
-                pythonClass.add_property(name, getter, doc.c_str());
-            } else if constexpr (flags & Attr::triggerPostLoad) {
-                const auto set = [attribute](Class& object, const T& value) {
-                    object.*attribute = value;
-                    object.callPostLoad();
-                };
-                const py::object setter
-                    = py::make_function(set, py::default_call_policies(), boost::mpl::vector3<void, Class&, const T&>());
-                pythonClass.add_property(name, getter, setter, doc.c_str());
-            } else {
-                pythonClass.add_property(name, getter, py::make_setter(attribute), doc.c_str());
-            }
+// Python may change a component of these in place, as in state.vel[2] = 0; of anything else it gets a copy.
+template <class T> struct GivenByReference : std::false_type {};
+template <> struct GivenByReference<Vector2i> : std::true_type {};
+template <> struct GivenByReference<Vector2r> : std::true_type {};
+template <> struct GivenByReference<Vector3i> : std::true_type {};
+template <> struct GivenByReference<Vector3r> : std::true_type {};
+template <> struct GivenByReference<Quaternionr> : std::true_type {};
+template <> struct GivenByReference<Matrix3r> : std::true_type {};
+
+template <int flags, class PythonClass, class Class, class T>
+void defineAttribute(PythonClass& pythonClass, const char* name, T Class::*attribute, string doc) {
+    if constexpr (!(flags & Attr::hidden)) {
+        using Policy = std::conditional_t<GivenByReference<T>::value, py::return_internal_reference<>,
+                                          py::return_value_policy<py::return_by_value>>;
+        doc += " :yattrflags:`" + std::to_string(flags) + "` ";
+        const py::object getter = py::make_getter(attribute, Policy());
+        if constexpr (flags & Attr::readonly) {
+            pythonClass.add_property(name, getter, doc.c_str());
+        } else if constexpr (flags & Attr::triggerPostLoad) {
+            const auto set = [attribute](Class& object, const T& value) {
+                object.*attribute = value;
+                object.callPostLoad();
+            };
+            const py::object setter =
+                py::make_function(set, py::default_call_policies(), boost::mpl::vector3<void, Class&, const T&>());
+            pythonClass.add_property(name, getter, setter, doc.c_str());
+        } else {
+            pythonClass.add_property(name, getter, py::make_setter(attribute), doc.c_str());
         }
-    }
-
-    template <class Class> shared_ptr<Class> construct(::boost::python::tuple args, ::boost::python::dict keywords)
-    {
-        shared_ptr<Class> object(new Class);
-        object->pyHandleCustomCtorArgs(args, keywords);
-        if (const auto extra = ::boost::python::len(args))
-            throw runtime_error(
-                object->getClassName() + " takes keyword arguments only, but got " + std::to_string(extra)
-                + " without a keyword.");
-        if (::boost::python::len(keywords) > 0) {
-            object->pyUpdateAttrs(keywords);
-            object->callPostLoad();
-        }
-        return object;
-    }
-
-    // __init__ of a Python class: Boost.Python knows no constructor with arbitrary keywords, so wrap the one above.
-    template <class Class> ::boost::python::object keywordConstructor()
-    {
-        namespace py = ::boost::python;
-        const py::object init = py::make_constructor(&construct<Class>);
-        return py::raw_function(
-            [init](py::tuple args, py::dict keywords) {
-                const py::object self(args[0]);
-                return py::object(init(self, py::tuple(args.slice(1, py::len(args))), keywords));
-            },
-            1);
     }
 }
 
+template <class Class> shared_ptr<Class> construct(py::tuple args, py::dict keywords) {
+    shared_ptr<Class> object(new Class);
+    object->pyHandleCustomCtorArgs(args, keywords);
+    if (const auto extra = py::len(args))
+        throw runtime_error(object->getClassName() + " takes keyword arguments only, but got " + std::to_string(extra) +
+                            " without a keyword.");
+    if (py::len(keywords) > 0) {
+        object->pyUpdateAttrs(keywords);
+        object->callPostLoad();
+    }
+    return object;
 }
+
+// __init__ of a Python class: Boost.Python knows no constructor with arbitrary keywords, so wrap the one above.
+template <class Class> py::object keywordConstructor() {
+    const py::object init = py::make_constructor(&construct<Class>);
+    return py::raw_function(
+        [init](py::tuple args, py::dict keywords) {
+            const py::object self(args[0]);
+            return py::object(init(self, py::tuple(args.slice(1, py::len(args))), keywords));
+        },
+        1);
+}
+} // namespace abi
+
+} // namespace yade

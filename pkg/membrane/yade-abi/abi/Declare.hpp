@@ -49,22 +49,21 @@ protected:                                                                      
                                                                                                                        \
 public:
 
-// After the class, in namespace yade: its name in saved files, and the functions of the libraries that save and load it.
+// After the class, in namespace yade: its name in saved files, and the library's functions that save and load it.
 #define YADE_ABI_SAVED(Class)                                                                                          \
     }                                                                                                                  \
     BOOST_CLASS_EXPORT_KEY(yade::Class)                                                                                \
     namespace boost {                                                                                                  \
     namespace archive {                                                                                                \
-        namespace detail {                                                                                             \
-            extern template void                                                                                       \
-            oserializer<xml_oarchive, yade::Class>::save_object_data(basic_oarchive&, const void*) const;              \
-            extern template void                                                                                       \
-            oserializer<binary_oarchive, yade::Class>::save_object_data(basic_oarchive&, const void*) const;           \
-            extern template void                                                                                       \
-            iserializer<xml_iarchive, yade::Class>::load_object_data(basic_iarchive&, void*, unsigned int) const;      \
-            extern template void                                                                                       \
-            iserializer<binary_iarchive, yade::Class>::load_object_data(basic_iarchive&, void*, unsigned int) const;   \
-        }                                                                                                              \
+    namespace detail {                                                                                                 \
+    extern template void oserializer<xml_oarchive, yade::Class>::save_object_data(basic_oarchive&, const void*) const; \
+    extern template void oserializer<binary_oarchive, yade::Class>::save_object_data(basic_oarchive&,                  \
+                                                                                     const void*) const;               \
+    extern template void iserializer<xml_iarchive, yade::Class>::load_object_data(basic_iarchive&, void*,              \
+                                                                                  unsigned int) const;                 \
+    extern template void iserializer<binary_iarchive, yade::Class>::load_object_data(basic_iarchive&, void*,           \
+                                                                                     unsigned int) const;              \
+    }                                                                                                                  \
     }                                                                                                                  \
     }                                                                                                                  \
     namespace yade {

@@ -16,4 +16,4 @@ public:
 YADE_ABI_LAYOUT(Aabb, 144, );
 YADE_ABI_SAVED(Aabb)
 
-}
+} // namespace yade

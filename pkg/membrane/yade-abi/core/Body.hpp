@@ -63,11 +63,9 @@ public:
     YADE_ABI_SERIALIZABLE
 };
 
-YADE_ABI_LAYOUT(
-    Body,
-    176,
-    ((id, 24))((groupMask, 28))((flags, 32))((subdomain, 36))((material, 40))((state, 56))((shape, 72))((bound, 88))(
-        (intrs, 104))((clumpId, 152))((iterBorn, 160))((timeBorn, 168)));
+YADE_ABI_LAYOUT(Body, 176,
+                ((id, 24))((groupMask, 28))((flags, 32))((subdomain, 36))((material, 40))((state, 56))((shape, 72))(
+                    (bound, 88))((intrs, 104))((clumpId, 152))((iterBorn, 160))((timeBorn, 168)));
 YADE_ABI_SAVED(Body)
 
-}
+} // namespace yade

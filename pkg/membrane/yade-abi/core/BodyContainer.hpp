@@ -18,7 +18,7 @@ class BodyContainer : public Serializable {
 
 public:
     struct isNonEmptySharedPtr {
-        bool operator()(const shared_ptr<Body>& body) const { return bool(body); }
+        bool operator()(const shared_ptr<Body>& b) const { return bool(b); }
     };
     using iterator = boost::filter_iterator<isNonEmptySharedPtr, ContainerT::iterator>;
 
@@ -50,14 +50,13 @@ public:
     YADE_ABI_SERIALIZABLE
 
 private:
-    BodyContainer();
+    BodyContainer(); // Scene's
 };
 
-YADE_ABI_LAYOUT(
-    BodyContainer,
-    200,
-    ((body, 24))((dirty, 48))((checkedByCollider, 49))((insertedBodies, 56))((erasedBodies, 80))((realBodies, 104))(
-        (useRedirection, 128))((enableRedirection, 129))((subdomainBodies, 136))((drawloopmutex, 160)));
+YADE_ABI_LAYOUT(BodyContainer, 200,
+                ((body, 24))((dirty, 48))((checkedByCollider, 49))((insertedBodies, 56))((erasedBodies, 80))(
+                    (realBodies, 104))((useRedirection, 128))((enableRedirection, 129))((subdomainBodies,
+                                                                                         136))((drawloopmutex, 160)));
 YADE_ABI_SAVED(BodyContainer)
 
-}
+} // namespace yade

@@ -16,21 +16,15 @@ public:
     Vector3r max;
 
     Bound()
-        : lastUpdateIter(0)
-        , refPos(NaN, NaN, NaN)
-        , sweepLength(0)
-        , color(1, 1, 1)
-        , min(NaN, NaN, NaN)
-        , max(NaN, NaN, NaN)
-    {
-    }
+        : lastUpdateIter(0), refPos(NaN, NaN, NaN), sweepLength(0), color(1, 1, 1), min(NaN, NaN, NaN),
+          max(NaN, NaN, NaN) {}
     virtual ~Bound();
     YADE_ABI_SERIALIZABLE
     YADE_ABI_TOP_INDEXABLE
 };
 
-YADE_ABI_LAYOUT(
-    Bound, 144, ((lastUpdateIter, 32))((refPos, 40))((sweepLength, 64))((color, 72))((min, 96))((max, 120)));
+YADE_ABI_LAYOUT(Bound, 144,
+                ((lastUpdateIter, 32))((refPos, 40))((sweepLength, 64))((color, 72))((min, 96))((max, 120)));
 YADE_ABI_SAVED(Bound)
 
-}
+} // namespace yade

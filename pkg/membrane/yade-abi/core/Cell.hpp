@@ -47,11 +47,10 @@ public:
 };
 
 YADE_ABI_LAYOUT(
-    Cell,
-    1104,
+    Cell, 1104,
     ((_invTrsf, 24))((_vGradTimesPrevH, 168))((_size, 240))((_refSize, 288))((_hasShear, 312))((_shearTrsf, 320))(
         (_glShearTrsfMatrix, 464))((trsf, 592))((refHSize, 664))((hSize, 736))((prevHSize, 808))((velGrad, 880))(
         (nextVelGrad, 952))((prevVelGrad, 1024))((homoDeform, 1096))((velGradChanged, 1100))((flipFlippable, 1101)));
 YADE_ABI_SAVED(Cell)
 
-}
+} // namespace yade

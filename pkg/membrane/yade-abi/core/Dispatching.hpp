@@ -13,10 +13,8 @@
 namespace yade {
 
 class BoundFunctor
-    : public Functor1D<
-          Shape,
-          void,
-          boost::mpl::vector<const shared_ptr<Shape>&, shared_ptr<Bound>&, const Se3r&, const Body*>> {
+    : public Functor1D<Shape, void,
+                       boost::mpl::vector<const shared_ptr<Shape>&, shared_ptr<Bound>&, const Se3r&, const Body*>> {
 public:
     BoundFunctor() {}
     virtual ~BoundFunctor();
@@ -26,17 +24,11 @@ public:
 // true if there is, or if force demands, a geometry for the pair; shift2 is the period of the second body
 class IGeomFunctor
     : public Functor2D<
-          Shape,
-          Shape,
-          bool,
-          boost::mpl::vector<
-              const shared_ptr<Shape>&,
-              const shared_ptr<Shape>&,
-              const State&,
-              const State&,
-              const Vector3r&, // shift2
-              const bool&,     // force
-              const shared_ptr<Interaction>&>> {
+          Shape, Shape, bool,
+          boost::mpl::vector<const shared_ptr<Shape>&, const shared_ptr<Shape>&, const State&, const State&,
+                             const Vector3r&, // shift2
+                             const bool&,     // force
+                             const shared_ptr<Interaction>&>> {
 public:
     IGeomFunctor() {}
     virtual ~IGeomFunctor();
@@ -46,15 +38,9 @@ public:
 };
 
 // called in every step: leaves an existing phys alone
-class IPhysFunctor
-    : public Functor2D<
-          Material,
-          Material,
-          void,
-          boost::mpl::vector<
-              const shared_ptr<Material>&,
-              const shared_ptr<Material>&,
-              const shared_ptr<Interaction>&>> {
+class IPhysFunctor : public Functor2D<Material, Material, void,
+                                      boost::mpl::vector<const shared_ptr<Material>&, const shared_ptr<Material>&,
+                                                         const shared_ptr<Interaction>&>> {
 public:
     IPhysFunctor() {}
     virtual ~IPhysFunctor();
@@ -71,14 +57,8 @@ public:
     void addForce(const Body::id_t id, const Vector3r& force, Scene* s) { s->forces.addForce(id, force); }
     void addTorque(const Body::id_t id, const Vector3r& torque, Scene* s) { s->forces.addTorque(id, torque); }
     // force on body 1, its opposite on body 2, and the moments of both about pos1 and pos2
-    void applyForceAtContactPoint(
-        const Vector3r& force,
-        const Vector3r& contactPoint,
-        const Body::id_t id1,
-        const Vector3r& pos1,
-        const Body::id_t id2,
-        const Vector3r& pos2)
-    {
+    void applyForceAtContactPoint(const Vector3r& force, const Vector3r& contactPoint, const Body::id_t id1,
+                                  const Vector3r& pos1, const Body::id_t id2, const Vector3r& pos2) {
         addForce(id1, force, scene);
         addForce(id2, -force, scene);
         addTorque(id1, (contactPoint - pos1).cross(force), scene);
@@ -96,4 +76,4 @@ YADE_ABI_SAVED(IGeomFunctor)
 YADE_ABI_SAVED(IPhysFunctor)
 YADE_ABI_SAVED(LawFunctor)
 
-}
+} // namespace yade

@@ -14,8 +14,7 @@ public:
     virtual ~EnergyTracker();
     void findId(const string& name, int& id, bool reset = false, bool newIfNotFound = true);
     // not from parallel sections
-    void set(const Real& value, const string& name, int& id)
-    {
+    void set(const Real& value, const string& name, int& id) {
         if (id < 0) findId(name, id, false);
         energies.set(size_t(id), value);
     }
@@ -37,4 +36,4 @@ public:
 YADE_ABI_LAYOUT(EnergyTracker, 176, ((energies, 24))((names, 88))((resetStep, 136)));
 YADE_ABI_SAVED(EnergyTracker)
 
-}
+} // namespace yade

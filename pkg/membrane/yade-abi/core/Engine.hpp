@@ -31,8 +31,8 @@ public:
     YADE_ABI_SERIALIZABLE
 };
 
-YADE_ABI_LAYOUT(
-    Engine, 104, ((scene, 24))((timingInfo, 32))((timingDeltas, 48))((dead, 64))((ompThreads, 68))((label, 72)));
+YADE_ABI_LAYOUT(Engine, 104,
+                ((scene, 24))((timingInfo, 32))((timingDeltas, 48))((dead, 64))((ompThreads, 68))((label, 72)));
 YADE_ABI_SAVED(Engine)
 
-}
+} // namespace yade

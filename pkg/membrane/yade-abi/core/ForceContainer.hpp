@@ -60,10 +60,9 @@ public:
 };
 
 YADE_ABI_LAYOUT(
-    ForceContainer,
-    304,
+    ForceContainer, 304,
     ((_forceData, 0))((_torqueData, 24))((_maxId, 48))((sizeOfThreads, 72))((_force, 96))((_torque, 120))(
         (_permForce, 144))((_permTorque, 168))((size, 192))((syncedSizes, 200))((nThreads, 204))((permForceUsed, 208))(
         (permForceSynced, 209))((globalMutex, 216))((_zero, 256))((synced, 280))((syncCount, 288))((lastReset, 296)));
 
-}
+} // namespace yade

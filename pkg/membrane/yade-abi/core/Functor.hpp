@@ -60,16 +60,22 @@ public:
     virtual ~Functor2D();
 };
 
-}
+} // namespace yade
 
 // The types a functor accepts. The calls it does not override stay visible beside the one it does.
 #define FUNCTOR1D(Type1)                                                                                               \
 public:                                                                                                                \
     using Calls::go;                                                                                                   \
-    ::std::string get1DFunctorType1() const override { return #Type1; }
+    ::std::string get1DFunctorType1() const override {                                                                 \
+        return #Type1;                                                                                                 \
+    }
 #define FUNCTOR2D(Type1, Type2)                                                                                        \
 public:                                                                                                                \
     using Calls::go;                                                                                                   \
     using Calls::goReverse;                                                                                            \
-    ::std::string get2DFunctorType1() const override { return #Type1; }                                                \
-    ::std::string get2DFunctorType2() const override { return #Type2; }
+    ::std::string get2DFunctorType1() const override {                                                                 \
+        return #Type1;                                                                                                 \
+    }                                                                                                                  \
+    ::std::string get2DFunctorType2() const override {                                                                 \
+        return #Type2;                                                                                                 \
+    }

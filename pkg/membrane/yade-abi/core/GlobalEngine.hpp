@@ -15,4 +15,4 @@ public:
 YADE_ABI_LAYOUT(GlobalEngine, 104, );
 YADE_ABI_SAVED(GlobalEngine)
 
-}
+} // namespace yade

@@ -17,4 +17,4 @@ public:
 YADE_ABI_LAYOUT(IGeom, 32, );
 YADE_ABI_SAVED(IGeom)
 
-}
+} // namespace yade

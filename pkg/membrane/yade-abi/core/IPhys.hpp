@@ -17,4 +17,4 @@ public:
 YADE_ABI_LAYOUT(IPhys, 32, );
 YADE_ABI_SAVED(IPhys)
 
-}
+} // namespace yade

@@ -25,10 +25,7 @@ public:
     const Body::id_t& getId2() const { return id2; }
     // possible only while neither geom nor phys is set
     void swapOrder();
-    bool operator<(const Interaction& other) const
-    {
-        return id1 < other.id1 || (id1 == other.id1 && id2 < other.id2);
-    }
+    bool operator<(const Interaction& other) const { return id1 < other.id1 || (id1 == other.id1 && id2 < other.id2); }
 
     // survives a change of the engines
     struct {
@@ -59,12 +56,10 @@ public:
     YADE_ABI_SERIALIZABLE
 };
 
-YADE_ABI_LAYOUT(
-    Interaction,
-    168,
-    ((isActive, 24))((functorCache.geomExists, 32))((functorCache.geom, 40))((functorCache.phys, 56))(
-        (functorCache.constLaw, 72))((id1, 88))((id2, 92))((iterMadeReal, 96))((iterLastSeen, 104))((geom, 112))(
-        (phys, 128))((cellDist, 144))((linIx, 156))((iterBorn, 160)));
+YADE_ABI_LAYOUT(Interaction, 168,
+                ((isActive, 24))((functorCache.geomExists, 32))((functorCache.geom, 40))((functorCache.phys, 56))(
+                    (functorCache.constLaw, 72))((id1, 88))((id2, 92))((iterMadeReal, 96))((iterLastSeen, 104))(
+                    (geom, 112))((phys, 128))((cellDist, 144))((linIx, 156))((iterBorn, 160)));
 YADE_ABI_SAVED(Interaction)
 
-}
+} // namespace yade

@@ -38,8 +38,7 @@ public:
     bool erase(Body::id_t, Body::id_t, int linPos = -1);
     // a null pointer if there is none
     const shared_ptr<Interaction>& find(Body::id_t, Body::id_t);
-    bool found(const Body::id_t& a, const Body::id_t& b)
-    {
+    bool found(const Body::id_t& a, const Body::id_t& b) {
         const Body::id_t low = std::min(a, b), high = std::max(a, b);
         if (low == high || high >= Body::id_t(bodies->size())) return false;
         return (*bodies)[low]->intrs.count(high) > 0;
@@ -62,14 +61,12 @@ public:
     YADE_ABI_ATTRIBUTES
 
 private:
-    InteractionContainer();
+    InteractionContainer(); // Scene's
 };
 
-YADE_ABI_LAYOUT(
-    InteractionContainer,
-    192,
-    ((linIntrs, 24))((sortedIntrs, 48))((bodies, 72))((currSize, 80))((empty, 88))((interaction, 104))((dirty, 128))(
-        (drawloopmutex, 136))((serializeSorted, 176))((iterColliderLastRun, 184)));
+YADE_ABI_LAYOUT(InteractionContainer, 192,
+                ((linIntrs, 24))((sortedIntrs, 48))((bodies, 72))((currSize, 80))((empty, 88))((interaction, 104))(
+                    (dirty, 128))((drawloopmutex, 136))((serializeSorted, 176))((iterColliderLastRun, 184)));
 YADE_ABI_SAVED(InteractionContainer)
 
-}
+} // namespace yade

@@ -18,7 +18,11 @@ public:
 
     // of the current scene unless one is given
     static const shared_ptr<Material> byId(int id, Scene* scene = nullptr);
+    static const shared_ptr<Material> byId(int id, shared_ptr<Scene> scene) { return byId(id, scene.get()); }
     static const shared_ptr<Material> byLabel(const string& label, Scene* scene = nullptr);
+    static const shared_ptr<Material> byLabel(const string& label, shared_ptr<Scene> scene) {
+        return byLabel(label, scene.get());
+    }
     static int byLabelIndex(const string& label, Scene* scene = nullptr);
 
     // -1 unless shared, that is in Scene::materials
@@ -34,4 +38,4 @@ public:
 YADE_ABI_LAYOUT(Material, 80, ((id, 32))((label, 40))((density, 72)));
 YADE_ABI_SAVED(Material)
 
-}
+} // namespace yade

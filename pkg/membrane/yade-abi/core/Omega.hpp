@@ -70,11 +70,9 @@ public:
 };
 
 YADE_ABI_LAYOUT(DynlibDescriptor, 56, ((baseClasses, 0))((isSerializable, 48)));
-YADE_ABI_LAYOUT(
-    Omega,
-    416,
-    ((simulationLoop, 0))((dynlibs, 32))((scenes, 80))((currentSceneNb, 104))((startupLocalTime, 128))(
-        (memSavedSimulations, 136))((tmpFileCounter, 224))((tmpFileDir, 232))((gdbCrashBatch, 264))((renderMutex, 312))(
-        (sceneFile, 352))((confDir, 384)));
+YADE_ABI_LAYOUT(Omega, 416,
+                ((simulationLoop, 0))((dynlibs, 32))((scenes, 80))((currentSceneNb, 104))((startupLocalTime, 128))(
+                    (memSavedSimulations, 136))((tmpFileCounter, 224))((tmpFileDir, 232))((gdbCrashBatch, 264))(
+                    (renderMutex, 312))((sceneFile, 352))((confDir, 384)));
 
-}
+} // namespace yade

@@ -19,4 +19,4 @@ public:
 YADE_ABI_LAYOUT(PartialEngine, 128, ((ids, 104)));
 YADE_ABI_SAVED(PartialEngine)
 
-}
+} // namespace yade

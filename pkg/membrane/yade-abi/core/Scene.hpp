@@ -23,8 +23,7 @@ class Scene : public Serializable {
 
 public:
     // returns the new id
-    int addMaterial(shared_ptr<Material> m)
-    {
+    int addMaterial(shared_ptr<Material> m) {
         materials.push_back(m);
         return m->id = int(materials.size()) - 1;
     }
@@ -80,15 +79,13 @@ public:
     YADE_ABI_SERIALIZABLE
 };
 
-YADE_ABI_LAYOUT(
-    Scene,
-    752,
-    ((hostNameMax, 24))((forces, 32))((SpeedElements, 336))((renderer, 416))((prevTime, 432))((dt, 440))((iter, 448))(
-        (subStepping, 456))((subStep, 460))((time, 464))((speed, 472))((stopAtIter, 480))((stopAtTime, 488))(
-        (isPeriodic, 496))((trackEnergy, 497))((doSort, 498))((runInternalConsistencyChecks, 499))(
-        (selectedBody, 500))((subdomain, 504))((subD, 512))((tags, 528))((engines, 552))((_nextEngines, 576))(
-        (bodies, 600))((interactions, 616))((energy, 632))((materials, 648))((bound, 672))((cell, 688))(
-        (miscParams, 704))((dispParams, 728)));
+YADE_ABI_LAYOUT(Scene, 752,
+                ((hostNameMax, 24))((forces, 32))((SpeedElements, 336))((renderer, 416))((prevTime, 432))((dt, 440))(
+                    (iter, 448))((subStepping, 456))((subStep, 460))((time, 464))((speed, 472))((stopAtIter, 480))(
+                    (stopAtTime, 488))((isPeriodic, 496))((trackEnergy, 497))((doSort, 498))(
+                    (runInternalConsistencyChecks, 499))((selectedBody, 500))((subdomain, 504))((subD, 512))(
+                    (tags, 528))((engines, 552))((_nextEngines, 576))((bodies, 600))((interactions, 616))(
+                    (energy, 632))((materials, 648))((bound, 672))((cell, 688))((miscParams, 704))((dispParams, 728)));
 YADE_ABI_SAVED(Scene)
 
-}
+} // namespace yade

@@ -25,8 +25,8 @@ public:
     YADE_ABI_TOP_INDEXABLE
 };
 
-YADE_ABI_LAYOUT(
-    Shape, 96, ((boundFunctor, 32))((internalforcefunctor, 48))((color, 64))((wire, 88))((highlight, 89)));
+YADE_ABI_LAYOUT(Shape, 96, ((boundFunctor, 32))((internalforcefunctor, 48))((color, 64))((wire, 88))((highlight, 89)));
+YADE_ABI_TAIL(Shape, 90);
 YADE_ABI_SAVED(Shape)
 
-}
+} // namespace yade

@@ -57,10 +57,9 @@ public:
 };
 
 YADE_ABI_LAYOUT(
-    State,
-    320,
-    ((updateMutex, 48))((se3, 88))((vel, 144))((mass, 168))((angVel, 176))((angMom, 200))((inertia, 224))(
-        (refPos, 248))((refOri, 272))((blockedDOFs, 304))((isDamped, 308))((densityScaling, 312)));
+    State, 320,
+    ((pos, 32))((ori, 40))((updateMutex, 48))((se3, 88))((vel, 144))((mass, 168))((angVel, 176))((angMom, 200))(
+        (inertia, 224))((refPos, 248))((refOri, 272))((blockedDOFs, 304))((isDamped, 308))((densityScaling, 312)));
 YADE_ABI_SAVED(State)
 
-}
+} // namespace yade

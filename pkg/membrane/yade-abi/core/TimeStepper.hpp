@@ -17,8 +17,7 @@ public:
     virtual void computeTimeStep(Scene*);
     bool isActivated() override;
     void action() override;
-    void setActive(bool on, int interval = -1)
-    {
+    void setActive(bool on, int interval = -1) {
         active = on;
         if (interval > 0) timeStepUpdateInterval = static_cast<unsigned int>(interval);
     }
@@ -28,4 +27,4 @@ public:
 YADE_ABI_LAYOUT(TimeStepper, 112, ((active, 104))((timeStepUpdateInterval, 108)));
 YADE_ABI_SAVED(TimeStepper)
 
-}
+} // namespace yade

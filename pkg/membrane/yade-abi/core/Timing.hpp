@@ -13,8 +13,7 @@ struct TimingInfo {
     delta nsec = 0;
 
     static bool enabled;
-    static delta getNow(bool evenIfDisabled = false)
-    {
+    static delta getNow(bool evenIfDisabled = false) {
         if (!enabled && !evenIfDisabled) return 0;
         timespec now;
         clock_gettime(CLOCK_MONOTONIC, &now);
@@ -26,4 +25,4 @@ class TimingDeltas;
 
 YADE_ABI_LAYOUT(TimingInfo, 16, ((nExec, 0))((nsec, 8)));
 
-}
+} // namespace yade

@@ -9,9 +9,9 @@
 
 namespace yade {
 namespace abi {
-    struct Logger {};
-}
-}
+struct Logger {};
+} // namespace abi
+} // namespace yade
 
 #define DECLARE_LOGGER                                                                                                 \
 public:                                                                                                                \
@@ -19,7 +19,7 @@ public:                                                                         
 #define CREATE_LOGGER(Class) static_assert(sizeof(Class::logger) > 0, #Class " needs DECLARE_LOGGER")
 #define CREATE_CPP_LOCAL_LOGGER(name)                                                                                  \
     namespace {                                                                                                        \
-    [[maybe_unused]] constexpr ::yade::abi::Logger logger {};                                                          \
+    [[maybe_unused]] constexpr ::yade::abi::Logger logger{};                                                           \
     }
 
 // One write per message, since functors log from several threads.

@@ -41,37 +41,37 @@
 namespace yade {
 
 namespace math {
-    using Real = double;
+using Real = double;
 
-    // Callers write math::sqrt(x), so that another Real would find its own.
-    using std::abs;
-    using std::acos;
-    using std::asin;
-    using std::atan;
-    using std::atan2;
-    using std::cbrt;
-    using std::ceil;
-    using std::cos;
-    using std::cosh;
-    using std::exp;
-    using std::fabs;
-    using std::floor;
-    using std::fmod;
-    using std::hypot;
-    using std::isfinite;
-    using std::isinf;
-    using std::isnan;
-    using std::log;
-    using std::max;
-    using std::min;
-    using std::pow;
-    using std::round;
-    using std::sin;
-    using std::sinh;
-    using std::sqrt;
-    using std::tan;
-    using std::tanh;
-}
+// Callers write math::sqrt(x), so that another Real would find its own.
+using std::abs;
+using std::acos;
+using std::asin;
+using std::atan;
+using std::atan2;
+using std::cbrt;
+using std::ceil;
+using std::cos;
+using std::cosh;
+using std::exp;
+using std::fabs;
+using std::floor;
+using std::fmod;
+using std::hypot;
+using std::isfinite;
+using std::isinf;
+using std::isnan;
+using std::log;
+using std::max;
+using std::min;
+using std::pow;
+using std::round;
+using std::sin;
+using std::sinh;
+using std::sqrt;
+using std::tan;
+using std::tanh;
+} // namespace math
 
 using math::Real;
 
@@ -137,6 +137,6 @@ YADE_ABI_LAYOUT(shared_ptr<void>, 16, );
 YADE_ABI_LAYOUT(string, 32, );
 YADE_ABI_LAYOUT(vector<int>, 24, );
 
-}
+} // namespace yade
 
 #include <abi/MathSerialization.hpp>

@@ -18,25 +18,19 @@ template <typename T> class OpenMPArrayAccumulator {
 public:
     size_t size() const { return length; }
     T operator[](size_t i) const { return get(i); }
-    T get(size_t i) const
-    {
+    T get(size_t i) const {
         T sum = 0;
-        for (const T* row : rows)
-            sum += row[i];
+        for (const T* row : rows) sum += row[i];
         return sum;
     }
     // not from parallel sections
-    void set(size_t i, const T& value)
-    {
-        for (T* row : rows)
-            row[i] = 0;
+    void set(size_t i, const T& value) {
+        for (T* row : rows) row[i] = 0;
         rows[0][i] = value;
     }
 };
 
-YADE_ABI_LAYOUT(
-    OpenMPArrayAccumulator<Real>,
-    64,
-    ((cacheLine, 0))((threads, 8))((perCacheLine, 16))((rows, 24))((length, 48))((cacheLines, 56)));
+YADE_ABI_LAYOUT(OpenMPArrayAccumulator<Real>, 64,
+                ((cacheLine, 0))((threads, 8))((perCacheLine, 16))((rows, 24))((length, 48))((cacheLines, 56)));
 
-}
+} // namespace yade

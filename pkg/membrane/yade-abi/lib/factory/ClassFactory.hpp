@@ -53,40 +53,43 @@ public:
 YADE_ABI_LAYOUT(ClassFactory, 168, ((dynLibManager_, 8))((map, 96))((pluginClasses, 144)));
 
 namespace abi {
-    template <class Class> Factorable* create() { return new Class; }
-    template <class Class> shared_ptr<Factorable> createShared() { return shared_ptr<Class>(new Class); }
-    template <class Class> void* createCustom() { return new Class; }
-
-    template <class Class> bool registerFactorable(const char* name)
-    {
-        return ClassFactory::instance().registerFactorable(
-            name, &create<Class>, &createShared<Class>, &createCustom<Class>);
-    }
-
-    inline bool announcePlugin(const char* file, std::initializer_list<const char*> classes)
-    {
-        vector<const char*> names(1, file);
-        names.insert(names.end(), classes);
-        names.push_back(nullptr);
-        ClassFactory::instance().registerPluginClasses(names.data());
-        return true;
-    }
+template <class Class> Factorable* create() {
+    return new Class;
+}
+template <class Class> shared_ptr<Factorable> createShared() {
+    return shared_ptr<Class>(new Class);
+}
+template <class Class> void* createCustom() {
+    return new Class;
 }
 
+template <class Class> bool registerFactorable(const char* name) {
+    return ClassFactory::instance().registerFactorable(name, &create<Class>, &createShared<Class>,
+                                                       &createCustom<Class>);
 }
+
+inline bool announcePlugin(const char* file, std::initializer_list<const char*> classes) {
+    vector<const char*> names(1, file);
+    names.insert(names.end(), classes);
+    names.push_back(nullptr);
+    ClassFactory::instance().registerPluginClasses(names.data());
+    return true;
+}
+} // namespace abi
+
+} // namespace yade
 
 // In namespace yade, after the class: makes it known to the factory when the library is loaded.
 #define REGISTER_FACTORABLE(Class)                                                                                     \
     [[maybe_unused]] const bool registered##Class = ::yade::abi::registerFactorable<Class>(#Class);
 
-// In a source file, in namespace yade, once: YADE_PLUGIN((ClassA)(ClassB)); announces the classes when the library is
-// loaded, and makes them known to the archives. It leaves and reopens the namespace because Boost's macros ask for that.
+// In a source file, in namespace yade: YADE_PLUGIN((ClassA)(ClassB)); announces the classes when the library is loaded,
+// and makes them known to the archives. Boost's macros do not work inside a namespace, so it is left and reopened.
 #define YADE_PLUGIN(classes)                                                                                           \
     }                                                                                                                  \
     namespace {                                                                                                        \
-    [[maybe_unused]] const bool BOOST_PP_CAT(announced, BOOST_PP_SEQ_HEAD(classes))                                    \
-        = ::yade::abi::announcePlugin(__FILE__, {BOOST_PP_SEQ_ENUM(BOOST_PP_SEQ_TRANSFORM(                             \
-                                                    YADE_ABI_PLUGIN_NAME, ~, classes))});                              \
+    [[maybe_unused]] const bool BOOST_PP_CAT(announced, BOOST_PP_SEQ_HEAD(classes)) = ::yade::abi::announcePlugin(     \
+        __FILE__, {BOOST_PP_SEQ_ENUM(BOOST_PP_SEQ_TRANSFORM(YADE_ABI_PLUGIN_NAME, ~, classes))});                      \
     }                                                                                                                  \
     BOOST_PP_SEQ_FOR_EACH(YADE_ABI_PLUGIN_EXPORT, ~, classes)                                                          \
     namespace yade {

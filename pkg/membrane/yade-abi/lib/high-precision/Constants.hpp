@@ -17,4 +17,4 @@ struct Mathr {
     static constexpr Real MAX_REAL = std::numeric_limits<Real>::max();
 };
 
-}
+} // namespace yade

@@ -35,9 +35,11 @@ public:
     virtual Result goReverse(P<0>, P<1>, P<2>, P<3>, P<4>, P<5>, P<6>);
 };
 
-}
+} // namespace yade
 
 // Asked for by dispatchers that may not swap the two arguments, such as the one for IGeomFunctor.
 #define DEFINE_FUNCTOR_ORDER_2D(Type1, Type2)                                                                          \
 public:                                                                                                                \
-    ::std::string checkOrder() const override { return #Type1 " " #Type2; }
+    ::std::string checkOrder() const override {                                                                        \
+        return #Type1 " " #Type2;                                                                                      \
+    }

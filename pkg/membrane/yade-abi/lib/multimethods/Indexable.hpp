@@ -11,8 +11,7 @@ namespace yade {
 // Numbers the classes below a top of dispatch. Not one function of it is in the libraries, hence the bodies.
 class Indexable {
 protected:
-    void createIndex()
-    {
+    void createIndex() {
         int& index = modifyClassIndex();
         if (index >= 0) return;
         incrementMaxCurrentlyUsedClassIndexOfKin();
@@ -34,25 +33,29 @@ private:
 
 YADE_ABI_LAYOUT(Indexable, 8, );
 
-}
+} // namespace yade
 
 // In the class, with createIndex() in its constructor. depth counts upwards: 1 is Base.
 #define REGISTER_CLASS_INDEX(Class, Base)                                                                              \
 private:                                                                                                               \
-    static int& modifyClassIndexStatic()                                                                               \
-    {                                                                                                                  \
+    static int& modifyClassIndexStatic() {                                                                             \
         static int index = -1;                                                                                         \
         return index;                                                                                                  \
     }                                                                                                                  \
                                                                                                                        \
 protected:                                                                                                             \
-    int& modifyClassIndex() override { return modifyClassIndexStatic(); }                                              \
+    int& modifyClassIndex() override {                                                                                 \
+        return modifyClassIndexStatic();                                                                               \
+    }                                                                                                                  \
                                                                                                                        \
 public:                                                                                                                \
-    static const int& getClassIndexStatic() { return modifyClassIndexStatic(); }                                       \
-    const int& getClassIndex() const override { return getClassIndexStatic(); }                                        \
-    const int& getBaseClassIndex(int depth) const override                                                             \
-    {                                                                                                                  \
+    static const int& getClassIndexStatic() {                                                                          \
+        return modifyClassIndexStatic();                                                                               \
+    }                                                                                                                  \
+    const int& getClassIndex() const override {                                                                        \
+        return getClassIndexStatic();                                                                                  \
+    }                                                                                                                  \
+    const int& getBaseClassIndex(int depth) const override {                                                           \
         static const ::boost::scoped_ptr<Base> base(new Base);                                                         \
         return depth > 1 ? base->getBaseClassIndex(depth - 1) : base->getClassIndex();                                 \
     }

@@ -39,7 +39,7 @@ public:
 
 YADE_ABI_LAYOUT(Serializable, 24, );
 
-}
+} // namespace yade
 
 #include <abi/Declare.hpp>
 
@@ -54,8 +54,8 @@ YADE_ABI_SAVED(Serializable)
     BOOST_CLASS_EXPORT_KEY(yade::Class)                                                                                \
     namespace yade {
 
-// Inside a class. attrs: sequence of tuples (type, name, default, flags, "doc"); inits: sequence of (member, value) for
-// the constructor; ctor: statements of the constructor; py: calls chained to the Python class, as in .def("f", &Class::f)
+// Inside a class. attrs: sequence of tuples (type, name, default, flags, "doc"). inits: sequence of pairs (member, value)
+// for the constructor. ctor: its statements. py: calls of the Python class, as in .def("f", &Class::f).
 #define YADE_CLASS_BASE_DOC(Class, Base, doc) YADE_CLASS_BASE_DOC_ATTRS_INIT_CTOR_PY(Class, Base, doc, , , , )
 #define YADE_CLASS_BASE_DOC_ATTRS(Class, Base, doc, attrs)                                                             \
     YADE_CLASS_BASE_DOC_ATTRS_INIT_CTOR_PY(Class, Base, doc, attrs, , , )
@@ -67,48 +67,48 @@ YADE_ABI_SAVED(Serializable)
 #define YADE_CLASS_BASE_DOC_ATTRS_INIT_CTOR_PY(Class, Base, doc, attrs, inits, ctor, py)                               \
 public:                                                                                                                \
     BOOST_PP_SEQ_FOR_EACH(YADE_ABI_DECLARE, ~, attrs)                                                                  \
-    Class() YADE_ABI_INITIALIZERS(YADE_ABI_ALL_INITIALIZERS(inits, attrs)) { ctor; }                                   \
+    Class() YADE_ABI_INITIALIZERS(YADE_ABI_ALL_INITIALIZERS(inits, attrs)) {                                           \
+        ctor;                                                                                                          \
+    }                                                                                                                  \
                                                                                                                        \
 private:                                                                                                               \
     friend class ::boost::serialization::access;                                                                       \
-    template <class Archive> void serialize(Archive& archive, unsigned int)                                            \
-    {                                                                                                                  \
+    template <class Archive> void serialize(Archive& archive, unsigned int) {                                          \
         archive& ::boost::serialization::make_nvp(#Base, ::boost::serialization::base_object<Base>(*this));            \
-        if (Archive::is_loading::value) preLoad(*this);                                                                \
-        else preSave(*this);                                                                                           \
+        if (Archive::is_loading::value)                                                                                \
+            preLoad(*this);                                                                                            \
+        else                                                                                                           \
+            preSave(*this);                                                                                            \
         BOOST_PP_SEQ_FOR_EACH(YADE_ABI_SAVE, archive, attrs)                                                           \
-        if (Archive::is_loading::value) postLoad(*this);                                                               \
-        else postSave(*this);                                                                                          \
+        if (Archive::is_loading::value)                                                                                \
+            postLoad(*this);                                                                                           \
+        else                                                                                                           \
+            postSave(*this);                                                                                           \
     }                                                                                                                  \
                                                                                                                        \
 public:                                                                                                                \
     REGISTER_CLASS_AND_BASE(Class, Base)                                                                               \
-    void pySetAttr(const ::std::string& key, const ::boost::python::object& value) override                            \
-    {                                                                                                                  \
+    void pySetAttr(const ::std::string& key, const ::boost::python::object& value) override {                          \
         BOOST_PP_SEQ_FOR_EACH(YADE_ABI_SET, ~, attrs)                                                                  \
         Base::pySetAttr(key, value);                                                                                   \
     }                                                                                                                  \
-    ::boost::python::dict pyDict() const override                                                                      \
-    {                                                                                                                  \
+    ::boost::python::dict pyDict() const override {                                                                    \
         ::boost::python::dict ret;                                                                                     \
         BOOST_PP_SEQ_FOR_EACH(YADE_ABI_TO_DICT, ret, attrs)                                                            \
         ret.update(this->pyDictCustom());                                                                              \
         ret.update(Base::pyDict());                                                                                    \
         return ret;                                                                                                    \
     }                                                                                                                  \
-    void callPostLoad() override                                                                                       \
-    {                                                                                                                  \
+    void callPostLoad() override {                                                                                     \
         Base::callPostLoad();                                                                                          \
         postLoad(*this);                                                                                               \
     }                                                                                                                  \
-    void pyRegisterClass(::boost::python::object scope) override                                                       \
-    {                                                                                                                  \
+    void pyRegisterClass(::boost::python::object scope) override {                                                     \
         checkPyClassRegistersItself(#Class);                                                                           \
         const ::boost::python::scope thisScope(scope);                                                                 \
         const ::boost::python::docstring_options docOptions(true, true, false);                                        \
-        ::boost::python::                                                                                              \
-            class_<Class, ::boost::shared_ptr<Class>, ::boost::python::bases<Base>, ::boost::noncopyable>              \
-                _classObj(#Class, doc);                                                                                \
+        ::boost::python::class_<Class, ::boost::shared_ptr<Class>, ::boost::python::bases<Base>, ::boost::noncopyable> \
+            _classObj(#Class, doc);                                                                                    \
         _classObj.def("__init__", ::yade::abi::keywordConstructor<Class>());                                           \
         BOOST_PP_SEQ_FOR_EACH(YADE_ABI_TO_PYTHON, Class, attrs)                                                        \
         (void)_classObj py;                                                                                            \

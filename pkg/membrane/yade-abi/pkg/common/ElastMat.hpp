@@ -31,4 +31,4 @@ YADE_ABI_LAYOUT(FrictMat, 104, ((frictionAngle, 96)));
 YADE_ABI_SAVED(ElastMat)
 YADE_ABI_SAVED(FrictMat)
 
-}
+} // namespace yade

@@ -19,6 +19,7 @@ public:
 };
 
 YADE_ABI_LAYOUT(FieldApplier, 112, ((fieldWorkIx, 104)));
+YADE_ABI_TAIL(FieldApplier, 108);
 YADE_ABI_SAVED(FieldApplier)
 
-}
+} // namespace yade

@@ -33,4 +33,4 @@ YADE_ABI_LAYOUT(NormShearPhys, 96, ((ks, 64))((shearForce, 72)));
 YADE_ABI_SAVED(NormPhys)
 YADE_ABI_SAVED(NormShearPhys)
 
-}
+} // namespace yade

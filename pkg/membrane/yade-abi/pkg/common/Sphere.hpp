@@ -19,4 +19,4 @@ public:
 YADE_ABI_LAYOUT(Sphere, 104, ((radius, 96)));
 YADE_ABI_SAVED(Sphere)
 
-}
+} // namespace yade

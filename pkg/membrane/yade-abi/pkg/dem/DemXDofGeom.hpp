@@ -22,4 +22,4 @@ public:
 YADE_ABI_LAYOUT(GenericSpheresContact, 96, ((normal, 32))((contactPoint, 56))((refR1, 80))((refR2, 88)));
 YADE_ABI_SAVED(GenericSpheresContact)
 
-}
+} // namespace yade

@@ -20,4 +20,4 @@ public:
 YADE_ABI_LAYOUT(FrictPhys, 104, ((tangensOfFrictionAngle, 96)));
 YADE_ABI_SAVED(FrictPhys)
 
-}
+} // namespace yade

@@ -24,25 +24,14 @@ public:
     virtual ~ScGeom();
 
     // sets normal and what rotate() and shearIncrement() need
-    void precompute(
-        const State& state1,
-        const State& state2,
-        const Scene*,
-        const shared_ptr<Interaction>&,
-        const Vector3r& currentNormal,
-        bool isNew,
-        const Vector3r& shift2,
-        bool avoidGranularRatcheting = true);
+    void precompute(const State& state1, const State& state2, const Scene*, const shared_ptr<Interaction>&,
+                    const Vector3r& currentNormal, bool isNew, const Vector3r& shift2,
+                    bool avoidGranularRatcheting = true);
     Vector3r& rotate(Vector3r& tangent) const;
     Vector3r& rotateNonSpherical(Vector3r& tangent) const;
     const Vector3r& shearIncrement() const { return shearInc; }
-    Vector3r getIncidentVel(
-        const State*,
-        const State*,
-        Real dt,
-        const Vector3r& shiftVel,
-        const Vector3r& shift2,
-        bool avoidGranularRatcheting = true) const;
+    Vector3r getIncidentVel(const State*, const State*, Real dt, const Vector3r& shiftVel, const Vector3r& shift2,
+                            bool avoidGranularRatcheting = true) const;
     Vector3r getIncidentVel(const State*, const State*, Real dt, bool avoidGranularRatcheting = true) const;
     Vector3r getRelAngVel(const State*, const State*, Real dt) const;
 
@@ -70,13 +59,13 @@ public:
     YADE_ABI_INDEXABLE
 };
 
-YADE_ABI_LAYOUT(
-    ScGeom, 192, ((twist_axis, 96))((orthonormal_axis, 120))((penetrationDepth, 160))((shearInc, 168)));
-YADE_ABI_LAYOUT(
-    ScGeom6D,
-    320,
-    ((initialOrientation1, 192))((initialOrientation2, 224))((twistCreep, 256))((twist, 288))((bending, 296)));
+YADE_ABI_LAYOUT(ScGeom, 192,
+                ((twist_axis, 96))((orthonormal_axis, 120))((radius1, 144))((radius2, 152))((penetrationDepth,
+                                                                                             160))((shearInc, 168)));
+YADE_ABI_LAYOUT(ScGeom6D, 320,
+                ((initialOrientation1, 192))((initialOrientation2, 224))((twistCreep, 256))((twist, 288))((bending,
+                                                                                                           296)));
 YADE_ABI_SAVED(ScGeom)
 YADE_ABI_SAVED(ScGeom6D)
 
-}
+} // namespace yade
