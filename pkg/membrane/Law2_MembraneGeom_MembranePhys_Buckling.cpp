@@ -2,12 +2,12 @@
 #include "Law2_MembraneGeom_MembranePhys_Buckling.hpp"
 #include "Faults.hpp"
 #include "mechanics/SideForce.hpp"
+#include <cmath>
 #include <core/EnergyTracker.hpp>
 #include <core/Interaction.hpp>
 #include <core/InteractionContainer.hpp>
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
-#include <cmath>
 
 namespace yade {
 
@@ -21,7 +21,8 @@ bool Law2_MembraneGeom_MembranePhys_Buckling::go(shared_ptr<IGeom>& geomBase, sh
     const Real tension = ::membrane::sideTension(geom.length, phys.kn, phys.restLength, phys.criticalLength);
     if (!std::isfinite(geom.length)) {
         faults::record(scene, "Membrane: the side between bodies #" + std::to_string(link->getId1()) + " and #" +
-                                  std::to_string(link->getId2()) + " has the length " + std::to_string(geom.length) + " m");
+                                  std::to_string(link->getId2()) + " has the length " + std::to_string(geom.length) +
+                                  " m");
         return true;
     }
     phys.normalForce = -tension * geom.normal;

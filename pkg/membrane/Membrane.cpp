@@ -3,13 +3,13 @@
 #include "MembraneGeom.hpp"
 #include "MembranePhys.hpp"
 #include "mechanics/SideForce.hpp"
+#include <cmath>
 #include <core/BodyContainer.hpp>
 #include <core/Interaction.hpp>
 #include <core/InteractionContainer.hpp>
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
 #include <pkg/common/Sphere.hpp>
-#include <cmath>
 
 namespace yade {
 
@@ -33,7 +33,8 @@ template <class Get> auto ofSides(const ::membrane::RestState& rest, Get get) {
 
 void Membrane::postLoad(Membrane&) {
     if (nodes.empty() && triangles.empty() && cables.empty()) return; // default constructed: filled in later by loading
-    if (!material && !triangles.empty()) throw std::invalid_argument("Membrane: material is missing; give a MembraneMat");
+    if (!material && !triangles.empty())
+        throw std::invalid_argument("Membrane: material is missing; give a MembraneMat");
     ::membrane::MeshInput input;
     input.nodes = nodes;
     input.triangles = triangles;
@@ -58,8 +59,9 @@ void Membrane::postLoad(Membrane&) {
 
 void Membrane::indexSides() {
     if (bodyIds.size() != nodes.size())
-        throw std::invalid_argument("Membrane: bodyIds has " + std::to_string(bodyIds.size()) + " entries; it must have one for each of the " +
-                                    std::to_string(nodes.size()) + " nodes");
+        throw std::invalid_argument("Membrane: bodyIds has " + std::to_string(bodyIds.size()) +
+                                    " entries; it must have one for each of the " + std::to_string(nodes.size()) +
+                                    " nodes");
     sideOfBodies_.clear();
     sideOfBodies_.reserve(rest_.sides.size());
     for (std::size_t i = 0; i < rest_.sides.size(); ++i)
@@ -78,7 +80,9 @@ vector<shared_ptr<State>> Membrane::states(Scene& scene) const {
     states.reserve(bodyIds.size());
     for (std::size_t i = 0; i < bodyIds.size(); ++i) {
         const shared_ptr<Body> body = Body::byId(bodyIds[i], &scene);
-        if (!body) throw std::runtime_error("Membrane: body #" + std::to_string(bodyIds[i]) + " of node " + std::to_string(i) + " is not in the scene");
+        if (!body)
+            throw std::runtime_error("Membrane: body #" + std::to_string(bodyIds[i]) + " of node " + std::to_string(i) +
+                                     " is not in the scene");
         states.push_back(body->state);
     }
     return states;
@@ -87,8 +91,9 @@ vector<shared_ptr<State>> Membrane::states(Scene& scene) const {
 ::membrane::Points Membrane::positions(Scene& scene, const vector<Vector3r>& given) const {
     if (given.size() == nodes.size()) return given;
     if (!given.empty())
-        throw std::invalid_argument("Membrane: positions has " + std::to_string(given.size()) + " points; it must have one for each of the " +
-                                    std::to_string(nodes.size()) + " nodes");
+        throw std::invalid_argument("Membrane: positions has " + std::to_string(given.size()) +
+                                    " points; it must have one for each of the " + std::to_string(nodes.size()) +
+                                    " nodes");
     ::membrane::Points x;
     x.reserve(nodes.size());
     for (const auto& state : states(scene)) x.push_back(state->pos);
@@ -102,16 +107,17 @@ vector<int> Membrane::addBodies(const vector<Vector3r>& at, Real radius) {
     if (!bodyIds.empty()) throw std::runtime_error("Membrane: its bodies were added already");
     if (!material) throw std::invalid_argument("Membrane: material is missing; give a MembraneMat");
     if (place.size() != nodes.size())
-        throw std::invalid_argument("Membrane.addBodies: positions has " + std::to_string(place.size()) + " points; it must have one for each of the " +
-                                    std::to_string(nodes.size()) + " nodes");
-    if (!(radius > 0.) || !std::isfinite(radius)) throw std::invalid_argument("Membrane.addBodies: radius = " + std::to_string(radius) + " must be finite and > 0");
+        throw std::invalid_argument("Membrane.addBodies: positions has " + std::to_string(place.size()) +
+                                    " points; it must have one for each of the " + std::to_string(nodes.size()) +
+                                    " nodes");
+    if (!(radius > 0.) || !std::isfinite(radius))
+        throw std::invalid_argument("Membrane.addBodies: radius = " + std::to_string(radius) +
+                                    " must be finite and > 0");
     for (std::size_t i = 0; i < place.size(); ++i)
-        if (!place[i].allFinite()) throw std::invalid_argument("Membrane.addBodies: positions[" + std::to_string(i) + "] must be finite");
+        if (!place[i].allFinite())
+            throw std::invalid_argument("Membrane.addBodies: positions[" + std::to_string(i) + "] must be finite");
 
-    if (material->id < 0) { // not yet among the scene's materials
-        material->id = static_cast<int>(scene->materials.size());
-        scene->materials.push_back(material);
-    }
+    if (material->id < 0) scene->addMaterial(material);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const shared_ptr<Body> body(new Body);
         const shared_ptr<Sphere> sphere(new Sphere);
@@ -141,8 +147,8 @@ void Membrane::addInteractions() {
         link->phys = shared_ptr<MembranePhys>(new MembranePhys(side));
         link->iterMadeReal = scene->iter;
         if (!scene->interactions->insert(link))
-            throw std::runtime_error("Membrane.addInteractions: bodies #" + std::to_string(bodyIds[side.a]) + " and #" + std::to_string(bodyIds[side.b]) +
-                                     " interact already");
+            throw std::runtime_error("Membrane.addInteractions: bodies #" + std::to_string(bodyIds[side.a]) + " and #" +
+                                     std::to_string(bodyIds[side.b]) + " interact already");
     }
 }
 

@@ -4,8 +4,8 @@
 #include "mechanics/RestState.hpp"
 #include <core/Body.hpp>
 #include <core/State.hpp>
-#include <lib/serialization/Serializable.hpp>
 #include <cstdint>
+#include <lib/serialization/Serializable.hpp>
 #include <unordered_map>
 
 namespace yade {

@@ -5,10 +5,10 @@
 #include "mechanics/Damping.hpp"
 #include "mechanics/Drag.hpp"
 #include "mechanics/SideForce.hpp"
+#include <cmath>
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
 #include <lib/high-precision/Constants.hpp>
-#include <cmath>
 #include <sstream>
 
 namespace yade {
@@ -41,7 +41,8 @@ void MembraneForceEngine::postLoad(MembraneForceEngine&) {
     requireNotNegative("zeta", zeta);
     requireNotNegative("airDensity", airDensity);
     if (!(theta0 >= 0. && theta0 <= Mathr::PI)) refuse("theta0", theta0, "in [0, pi]");
-    if (creaseLaw != "paper" && creaseLaw != "conservative") refuse("creaseLaw", creaseLaw, "'paper' or 'conservative'");
+    if (creaseLaw != "paper" && creaseLaw != "conservative")
+        refuse("creaseLaw", creaseLaw, "'paper' or 'conservative'");
     preparedFor_ = nullptr;
 }
 
@@ -76,7 +77,8 @@ void MembraneForceEngine::prepare(Scene& scene) {
         points->assign(n, Vector3r::Zero());
     damping_.clear();
     for (const ::membrane::Side& s : membrane->rest().sides)
-        damping_.push_back(::membrane::dampingCoefficient(zeta, s.stiffness, 0.5 * (states_[s.a]->mass + states_[s.b]->mass)));
+        damping_.push_back(
+            ::membrane::dampingCoefficient(zeta, s.stiffness, 0.5 * (states_[s.a]->mass + states_[s.b]->mass)));
     checkedStep_ = -1.;
     preparedFor_ = &scene;
 }
@@ -91,8 +93,9 @@ void MembraneForceEngine::gather() {
     if (probe == 0.) return;
     for (std::size_t i = 0; i < states_.size(); ++i)
         if (!x_[i].allFinite() || !v_[i].allFinite())
-            throw std::runtime_error("Membrane: the run diverged at t = " + std::to_string(scene->time) + " s: node " + std::to_string(i) + " (body #" +
-                                     std::to_string(membrane->bodyIds[i]) + ") has a position or velocity that is not finite");
+            throw std::runtime_error("Membrane: the run diverged at t = " + std::to_string(scene->time) + " s: node " +
+                                     std::to_string(i) + " (body #" + std::to_string(membrane->bodyIds[i]) +
+                                     ") has a position or velocity that is not finite");
 }
 
 void MembraneForceEngine::checkTimeStep() {
@@ -173,7 +176,8 @@ Real MembraneForceEngine::creaseEnergy(const ::membrane::Points& x) const {
     const ::membrane::CreaseLaw lawNow = law();
     Real energy = 0.;
     for (const ::membrane::Crease& c : membrane->rest().creases)
-        energy += ::membrane::creaseEnergy(c.rest, lawNow, ::membrane::creaseState(c.rest, x[c.a], x[c.b], x[c.c], x[c.d]).theta);
+        energy += ::membrane::creaseEnergy(c.rest, lawNow,
+                                           ::membrane::creaseState(c.rest, x[c.a], x[c.b], x[c.c], x[c.d]).theta);
     return energy;
 }
 

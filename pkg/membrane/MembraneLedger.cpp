@@ -34,7 +34,8 @@ void MembraneLedger::action() {
         const Vector3r total = scene->forces.getForce(membrane.bodyIds[i]);
         const bool driven = (state.blockedDOFs & State::DOF_XYZ) == State::DOF_XYZ;
         const Vector3r v = driven ? Vector3r(state.angVel.cross(x[i])) : Vector3r(0.5 * (before[i] + state.vel));
-        const Vector3r &fCrease = forces->creaseForces()[i], &fDamping = forces->dampingForces()[i], &fDrag = forces->dragForces()[i];
+        const Vector3r &fCrease = forces->creaseForces()[i], &fDamping = forces->dampingForces()[i],
+                       &fDrag = forces->dragForces()[i];
         rates[0] += fCrease.dot(v);
         rates[1] += fDamping.dot(v);
         rates[2] += fDrag.dot(v);

@@ -15,9 +15,10 @@ void Ip2_MembraneMat_MembraneMat_MembranePhys::go(const shared_ptr<Material>&, c
     link->phys = phys;
     const int side = membrane ? membrane->sideBetween(link->getId1(), link->getId2()) : -1;
     if (side < 0) { // it gets a spring without stiffness, since none at all would end the process
-        faults::record(scene, "Ip2_MembraneMat_MembraneMat_MembranePhys: bodies #" + std::to_string(link->getId1()) + " and #" +
-                                  std::to_string(link->getId2()) +
-                                  (membrane ? " interact but are no side of the membrane" : " interact but membrane is not set"));
+        faults::record(
+            scene, "Ip2_MembraneMat_MembraneMat_MembranePhys: bodies #" + std::to_string(link->getId1()) + " and #" +
+                       std::to_string(link->getId2()) +
+                       (membrane ? " interact but are no side of the membrane" : " interact but membrane is not set"));
         return;
     }
     phys->set(membrane->rest().sides[side]);

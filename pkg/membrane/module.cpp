@@ -2,10 +2,10 @@
 // The Python extension module `_membrane`: registers the plugin's classes with a YADE that is running already.
 // Built into a YADE tree, the classes are native and this module is never imported.
 #include "Membrane.hpp"
+#include <core/BodyContainer.hpp>
 #include <core/Engine.hpp>
 #include <core/Interaction.hpp>
 #include <core/InteractionContainer.hpp>
-#include <core/BodyContainer.hpp>
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
 #include <lib/factory/ClassFactory.hpp>
@@ -18,10 +18,16 @@ namespace {
 namespace py = boost::python;
 using namespace yade;
 
-const vector<string> classNames = {
-    "MembraneMat",  "Membrane", "MembraneGeom", "Ig2_Sphere_Sphere_MembraneGeom",
-    "MembranePhys", "Ip2_MembraneMat_MembraneMat_MembranePhys", "Law2_MembraneGeom_MembranePhys_Buckling",
-    "MembraneForceEngine", "CentrifugalField", "MembraneLedger"};
+const vector<string> classNames = {"MembraneMat",
+                                   "Membrane",
+                                   "MembraneGeom",
+                                   "Ig2_Sphere_Sphere_MembraneGeom",
+                                   "MembranePhys",
+                                   "Ip2_MembraneMat_MembraneMat_MembranePhys",
+                                   "Law2_MembraneGeom_MembranePhys_Buckling",
+                                   "MembraneForceEngine",
+                                   "CentrifugalField",
+                                   "MembraneLedger"};
 
 // Omega::buildDynlibDatabase is private; an explicit instantiation may name it all the same.
 struct BuildDatabase {
@@ -40,7 +46,9 @@ void registerClasses() {
     for (const string& name : classNames) ClassFactory::instance().pluginClasses.remove(name);
 }
 
-py::tuple asTuple(const Vector3r& v) { return py::make_tuple(v[0], v[1], v[2]); }
+py::tuple asTuple(const Vector3r& v) {
+    return py::make_tuple(v[0], v[1], v[2]);
+}
 
 /// What the compiled offsets find in native objects; the package compares it with what Python wrote there.
 py::dict fieldsOfBody(const shared_ptr<Body>& body) {

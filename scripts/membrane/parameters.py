@@ -118,7 +118,8 @@ def _check(item, value):
         raise ValueError(f"{item.name} = {value} must be a whole number")
     low = value > about["least"] if about["above"] else value >= about["least"]
     if not (low and value <= about["most"] and abs(value) < inf):
-        raise ValueError(f"{item.name} = {value} {about['unit']} must be {_range(about)}")
+        unit = "" if about["unit"] == "-" else " " + about["unit"]
+        raise ValueError(f"{item.name} = {value}{unit} must be {_range(about)}")
 
 
 def _range(about):

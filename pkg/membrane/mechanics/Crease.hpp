@@ -18,18 +18,18 @@ struct CreaseRest {
 
 /// Parameters of the crease law, paper equation (7).
 struct CreaseLaw {
-    double bending = 0.;      ///< beta E J [N m], J = h³/12
-    double penalty = 100.;    ///< gamma [-], stiffens theta < 0 where the faces have passed through each other
-    double naturalAngle = 0.; ///< theta0 [rad]
+    double bending = 0.;       ///< beta E J [N m], J = h³/12
+    double penalty = 100.;     ///< gamma [-], stiffens theta < 0 where the faces have passed through each other
+    double naturalAngle = 0.;  ///< theta0 [rad]
     bool conservative = false; ///< false: (7) as printed; true: minus the gradient of creaseEnergy()
 };
 
 /// Where a crease is: its angle and how that angle changes as the four nodes move.
 struct CreaseState {
-    double theta = 0.;              ///< angle between the triangles [rad], 0 closed, pi flat, in (-pi/2, 3 pi/2]
-    Eigen::Vector3d openC, openD;   ///< unit vectors along which C and D move to open the crease; 0 if collapsed
+    double theta = 0.;                 ///< angle between the triangles [rad], 0 closed, pi flat, in (-pi/2, 3 pi/2]
+    Eigen::Vector3d openC, openD;      ///< unit vectors along which C and D move to open the crease; 0 if collapsed
     double heightC = 0., heightD = 0.; ///< current heights l_CE, l_DF [m]
-    double footC = 0., footD = 0.;  ///< l_AE / l_AB and l_AF / l_AB, signed: outside [0, 1] if the foot is outside AB
+    double footC = 0., footD = 0.; ///< l_AE / l_AB and l_AF / l_AB, signed: outside [0, 1] if the foot is outside AB
 };
 
 /// Forces [N] on the nodes of a crease.

@@ -45,10 +45,10 @@ std::vector<StiffCrease> stiffCreases(const TimeStepInput& in) {
         const double heightC = std::max(s.heightC, leverFloor * c.rest.heightC);
         const double heightD = std::max(s.heightD, leverFloor * c.rest.heightD);
         const Eigen::Vector3d gradC = s.openC / heightC, gradD = s.openD / heightD;
-        creases.push_back({{c.a, c.b, c.c, c.d},
-                           {-(1. - s.footC) * gradC - (1. - s.footD) * gradD, -s.footC * gradC - s.footD * gradD, gradC,
-                            gradD},
-                           creaseStiffness(c.rest, in.crease) * std::max(1., in.crease.penalty)});
+        creases.push_back(
+            {{c.a, c.b, c.c, c.d},
+             {-(1. - s.footC) * gradC - (1. - s.footD) * gradD, -s.footC * gradC - s.footD * gradD, gradC, gradD},
+             creaseStiffness(c.rest, in.crease) * std::max(1., in.crease.penalty)});
     }
     return creases;
 }
@@ -73,8 +73,10 @@ double criticalTimeStep(const TimeStepInput& in) {
     for (int iteration = 0; iteration < iterations; ++iteration) {
         double norm = 0.;
         for (std::size_t i = 0; i < n; ++i)
-            if (scale[i] == 0.) x[i].setZero();
-            else norm += x[i].squaredNorm();
+            if (scale[i] == 0.)
+                x[i].setZero();
+            else
+                norm += x[i].squaredNorm();
         norm = std::sqrt(norm);
         if (!(norm > 0.)) return std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < n; ++i) {

@@ -16,7 +16,9 @@ namespace {
 
 using NodePair = std::pair<int, int>;
 
-NodePair ordered(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
+NodePair ordered(int a, int b) {
+    return {std::min(a, b), std::max(a, b)};
+}
 
 template <class... Parts> [[noreturn]] void refuse(const Parts&... parts) {
     std::ostringstream message;
@@ -38,7 +40,8 @@ void checkParameters(const MeshInput& in) {
         requirePositive("young", in.young);
         requirePositive("thickness", in.thickness);
         requirePositive("density", in.density);
-        if (!(in.poisson > -1. && in.poisson <= 0.5)) refuse("Membrane: poisson = ", in.poisson, " must be in (-1, 0.5]");
+        if (!(in.poisson > -1. && in.poisson <= 0.5))
+            refuse("Membrane: poisson = ", in.poisson, " must be in (-1, 0.5]");
     }
     if (!in.cables.empty()) {
         requirePositive("cableStiffness", in.cableStiffness);
@@ -47,10 +50,11 @@ void checkParameters(const MeshInput& in) {
     requireNotNegative("alpha", in.alpha);
     requireNotNegative("alphaCrease", in.alphaCrease);
     for (std::size_t i = 0; i < in.nodes.size(); ++i)
-        if (!in.nodes[i].allFinite()) refuse("Membrane: nodes[", i, "] = (", in.nodes[i].transpose(), ") must be finite");
+        if (!in.nodes[i].allFinite())
+            refuse("Membrane: nodes[", i, "] = (", in.nodes[i].transpose(), ") must be finite");
     if (!in.pointMasses.empty() && in.pointMasses.size() != in.nodes.size())
-        refuse("Membrane: pointMasses has ", in.pointMasses.size(), " entries; it must be empty or have one for each of the ",
-               in.nodes.size(), " nodes");
+        refuse("Membrane: pointMasses has ", in.pointMasses.size(),
+               " entries; it must be empty or have one for each of the ", in.nodes.size(), " nodes");
     for (std::size_t i = 0; i < in.pointMasses.size(); ++i)
         if (!(in.pointMasses[i] >= 0.) || !std::isfinite(in.pointMasses[i]))
             refuse("Membrane: pointMasses[", i, "] = ", in.pointMasses[i], " must be finite and >= 0");
@@ -66,7 +70,8 @@ template <class Indices> void checkIndices(const char* field, std::size_t at, co
             refuse("Membrane: ", field, "[", at, "] = (", nodes.transpose(), ") names node ", nodes[i],
                    "; it must be in 0..", static_cast<long>(count) - 1);
         for (int j = 0; j < i; ++j)
-            if (nodes[i] == nodes[j]) refuse("Membrane: ", field, "[", at, "] = (", nodes.transpose(), ") repeats node ", nodes[i]);
+            if (nodes[i] == nodes[j])
+                refuse("Membrane: ", field, "[", at, "] = (", nodes.transpose(), ") repeats node ", nodes[i]);
     }
 }
 
@@ -107,14 +112,15 @@ std::map<NodePair, FilmSide> collectFilm(const MeshInput& in, RestState& rest) {
         const Eigen::Vector3d k = triangleStiffness(lengths, area, in.young, in.poisson, in.thickness);
         const auto [angle, apex] = largestAngle(lengths);
         if (!k.allFinite())
-            refuse("Membrane: triangles[", t, "] = (", tri.transpose(), ") has no stiffness by equation (5) at poisson = ",
-                   in.poisson, ": its angle of ", angle, " degrees at node ", tri[apex], " makes the equations singular");
+            refuse("Membrane: triangles[", t, "] = (", tri.transpose(),
+                   ") has no stiffness by equation (5) at poisson = ", in.poisson, ": its angle of ", angle,
+                   " degrees at node ", tri[apex], " makes the equations singular");
         for (int i = 0; i < 3; ++i) {
             const int a = tri[(i + 1) % 3], b = tri[(i + 2) % 3];
             if (k[i] < 0. && !in.allowNegativeStiffness)
-                refuse("Membrane: triangles[", t, "] = (", tri.transpose(), ") gives side (", a, ", ", b, ") the stiffness ",
-                       k[i], " N/m; it must be >= 0. The angle of ", angle, " degrees at node ", tri[apex],
-                       " is to blame: remesh, or set allowNegativeStiffness=True");
+                refuse("Membrane: triangles[", t, "] = (", tri.transpose(), ") gives side (", a, ", ", b,
+                       ") the stiffness ", k[i], " N/m; it must be >= 0. The angle of ", angle, " degrees at node ",
+                       tri[apex], " is to blame: remesh, or set allowNegativeStiffness=True");
             FilmSide& side = film[ordered(a, b)];
             if (side.triangles == 2)
                 refuse("Membrane: side (", a, ", ", b, ") has a third triangle, triangles[", t, "], besides ",
@@ -148,15 +154,19 @@ Crease makeCrease(const MeshInput& in, std::size_t at, const std::map<NodePair, 
         refuse("Membrane: creases[", at, "] = (", nodes.transpose(), ") is no side of any triangle");
     const FilmSide& side = found->second;
     if (side.triangles != 2)
-        refuse("Membrane: creases[", at, "] = (", nodes.transpose(), ") lies on the edge; it must be shared by 2 triangles");
+        refuse("Membrane: creases[", at, "] = (", nodes.transpose(),
+               ") lies on the edge; it must be shared by 2 triangles");
     if (side.forward[0] == side.forward[1])
         refuse("Membrane: triangles ", side.triangle[0], " and ", side.triangle[1], " run along creases[", at, "] = (",
                nodes.transpose(), ") in the same direction; orient them alike");
 
     // ABC is the triangle that runs from the lower node A to the higher node B.
     const int ofC = side.forward[0] ? 0 : 1;
-    Crease crease{key.first, key.second, apexOf(in.triangles[side.triangle[ofC]], key),
-                  apexOf(in.triangles[side.triangle[1 - ofC]], key), {}};
+    Crease crease{key.first,
+                  key.second,
+                  apexOf(in.triangles[side.triangle[ofC]], key),
+                  apexOf(in.triangles[side.triangle[1 - ofC]], key),
+                  {}};
     const Eigen::Vector3d &a = in.nodes[crease.a], &b = in.nodes[crease.b];
     crease.rest.length = (b - a).norm();
     crease.rest.heightC = 2. * triangleArea(a, b, in.nodes[crease.c]) / crease.rest.length;
@@ -183,7 +193,8 @@ RestState restState(const MeshInput& in) {
     for (const auto& [key, side] : film) {
         const bool onCrease = creased.count(key) > 0;
         const double length = (in.nodes[key.first] - in.nodes[key.second]).norm();
-        rest.sides.push_back({key.first, key.second, onCrease ? SideKind::crease : SideKind::film, length, side.stiffness,
+        rest.sides.push_back({key.first, key.second, onCrease ? SideKind::crease : SideKind::film, length,
+                              side.stiffness,
                               criticalLength(length, onCrease ? in.alphaCrease : in.alpha, in.thickness)});
     }
 
@@ -192,9 +203,11 @@ RestState restState(const MeshInput& in) {
         checkIndices("cables", i, in.cables[i], in.nodes.size());
         const NodePair key = ordered(in.cables[i][0], in.cables[i][1]);
         if (film.count(key) || !tied.insert(key).second)
-            refuse("Membrane: cables[", i, "] = (", in.cables[i].transpose(), ") doubles another cable or a side of the film");
+            refuse("Membrane: cables[", i, "] = (", in.cables[i].transpose(),
+                   ") doubles another cable or a side of the film");
         const double length = (in.nodes[key.first] - in.nodes[key.second]).norm();
-        if (!(length > 0.)) refuse("Membrane: cables[", i, "] = (", in.cables[i].transpose(), ") has length 0; it must be > 0");
+        if (!(length > 0.))
+            refuse("Membrane: cables[", i, "] = (", in.cables[i].transpose(), ") has length 0; it must be > 0");
         rest.sides.push_back({key.first, key.second, SideKind::cable, length, in.cableStiffness / length, length});
         for (int node : {key.first, key.second}) rest.masses[node] += 0.5 * in.cableDensity * length;
     }

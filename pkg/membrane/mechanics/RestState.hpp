@@ -17,17 +17,17 @@ struct MeshInput {
     std::vector<Eigen::Vector2i> cables;    ///< segments of cables (tethers), node indices
     std::vector<double> pointMasses;        ///< mass added to each node [kg], or empty
     double young = 0., poisson = 0., density = 0., thickness = 0.; ///< film [Pa], [-], [kg/m³], [m]
-    double cableStiffness = 0.;             ///< EA [N]
-    double cableDensity = 0.;               ///< mass a length [kg/m]
-    double alpha = 0., alphaCrease = 0.;    ///< buckling parameter (6) of the film and of sides on creases [-]
-    bool allowNegativeStiffness = false;    ///< accept sides whose stiffness (5) is not positive
+    double cableStiffness = 0.;                                    ///< EA [N]
+    double cableDensity = 0.;                                      ///< mass a length [kg/m]
+    double alpha = 0., alphaCrease = 0.; ///< buckling parameter (6) of the film and of sides on creases [-]
+    bool allowNegativeStiffness = false; ///< accept sides whose stiffness (5) is not positive
 };
 
 enum class SideKind : int { film = 0, crease = 1, cable = 2 };
 
 /// One spring of the membrane.
 struct Side {
-    int a, b;          ///< node indices, a < b
+    int a, b; ///< node indices, a < b
     SideKind kind;
     double restLength; ///< L0 [m]
     double stiffness;  ///< k [N/m], (5) summed over the triangles of the side; EA/L0 for a cable
