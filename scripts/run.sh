@@ -9,7 +9,8 @@ usage: scripts/run.sh COMMAND [options]
 
   deploy [-j N] [options]   fold, spin up and deploy the sail, on N threads (default 1);
                             options of scripts/deploy.py, listed by `scripts/run.sh deploy --help`
-  test [-j N] [--full]      run the tests; --full adds the long ones
+  test [-j N] [--full] [MODULE ...]
+                            run the tests, or those of some modules; --full adds the long ones
   bench [-j N] [options]    measure the speed; options of scripts/bench.py
   build                     compile the plugin into build/python
   format [--check]          format C++ and Python sources; --check changes nothing and fails where

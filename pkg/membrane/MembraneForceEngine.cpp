@@ -69,9 +69,9 @@ void MembraneForceEngine::action() {
 }
 
 /// Looks up the bodies and computes what stays the same while it runs.
-void MembraneForceEngine::prepare(Scene& scene) {
+void MembraneForceEngine::prepare(Scene& now) {
     if (!membrane) throw std::runtime_error("MembraneForceEngine: membrane is not set");
-    states_ = membrane->states(scene);
+    states_ = membrane->states(now);
     const std::size_t n = states_.size();
     for (::membrane::Points* points : {&x_, &v_, &creaseForces_, &dampingForces_, &dragForces_})
         points->assign(n, Vector3r::Zero());
@@ -80,7 +80,7 @@ void MembraneForceEngine::prepare(Scene& scene) {
         damping_.push_back(
             ::membrane::dampingCoefficient(zeta, s.stiffness, 0.5 * (states_[s.a]->mass + states_[s.b]->mass)));
     checkedStep_ = -1.;
-    preparedFor_ = &scene;
+    preparedFor_ = &now;
 }
 
 void MembraneForceEngine::gather() {

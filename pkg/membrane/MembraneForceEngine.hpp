@@ -62,7 +62,7 @@ private:
     const Scene* preparedFor_ = nullptr;
     Real checkedStep_ = -1.;
 
-    void prepare(Scene& scene);
+    void prepare(Scene& now);
     void gather();
     void checkTimeStep();
     void addCreases();

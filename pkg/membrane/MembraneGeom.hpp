@@ -23,6 +23,9 @@ public:
         "first body to the second). Its :yref:`penetrationDepth<ScGeom.penetrationDepth>` [m] is rest length minus length; rotation and shear are not used.",
         ((Real, length, 0., , "Present length of the side [m]."))
         ,
+        // YADE leaves these as it finds the memory; saved files should not hold what happens to lie there.
+        normal = Vector3r::UnitX();
+        contactPoint = shearInc = Vector3r::Zero();
         createIndex();
     );
     // clang-format on

@@ -18,17 +18,6 @@ namespace {
 namespace py = boost::python;
 using namespace yade;
 
-const vector<string> classNames = {"MembraneMat",
-                                   "Membrane",
-                                   "MembraneGeom",
-                                   "Ig2_Sphere_Sphere_MembraneGeom",
-                                   "MembranePhys",
-                                   "Ip2_MembraneMat_MembraneMat_MembranePhys",
-                                   "Law2_MembraneGeom_MembranePhys_Buckling",
-                                   "MembraneForceEngine",
-                                   "CentrifugalField",
-                                   "MembraneLedger"};
-
 // Omega::buildDynlibDatabase is private; an explicit instantiation may name it all the same.
 struct BuildDatabase {
     using Member = void (Omega::*)(const vector<string>&);
@@ -39,11 +28,11 @@ template <class Tag, typename Tag::Member member> struct Expose {
 };
 template struct Expose<BuildDatabase, &Omega::buildDynlibDatabase>;
 
-/// Makes the classes known to YADE's class list and to yade.wrapper.
-void registerClasses() {
-    (Omega::instance().*memberOf(BuildDatabase()))(classNames);
+/// Makes the classes of these names known to YADE's class list and to yade.wrapper.
+void registerClasses(const vector<string>& names) {
+    (Omega::instance().*memberOf(BuildDatabase()))(names);
     // Left in the list of plugins, they would be registered a second time when another plugin is loaded.
-    for (const string& name : classNames) ClassFactory::instance().pluginClasses.remove(name);
+    for (const string& name : names) ClassFactory::instance().pluginClasses.remove(name);
 }
 
 py::tuple asTuple(const Vector3r& v) {
@@ -122,9 +111,4 @@ BOOST_PYTHON_MODULE(_membrane) {
     py::def("fields_of_engine", fieldsOfEngine);
     py::def("fields_of_scene", fieldsOfScene);
     py::def("write_state", writeState);
-    py::scope().attr("class_names") = [] {
-        py::list names;
-        for (const string& name : classNames) names.append(name);
-        return names;
-    }();
 }

@@ -33,7 +33,7 @@ def load():
     if not all(hasattr(wrapper, name) for name in CLASSES):
         native = importlib.import_module("._membrane", __package__)
         check_layout(native, wrapper)
-        native.register_classes()
+        native.register_classes(list(CLASSES))
     return {name: getattr(wrapper, name) for name in CLASSES}
 
 
@@ -46,7 +46,8 @@ def _running_yade():
     found = (config.version.strip(), config.highPrecisionName)
     if found != (YADE_VERSION, PRECISION):
         raise ImportError(
-            f"membrane: built for YADE {YADE_VERSION} ({PRECISION}), but this is YADE {found[0]} ({found[1]})"
+            f"membrane: built for YADE {YADE_VERSION} ({PRECISION}), "
+            f"but this is YADE {found[0]} ({found[1]})"
         )
     return sys.modules["yade.wrapper"]
 

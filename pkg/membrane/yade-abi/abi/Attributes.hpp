@@ -53,7 +53,7 @@
 namespace yade {
 
 namespace Attr {
-enum flags { noSave = 1, readonly = 2, triggerPostLoad = 4, hidden = 8, noResize = 16 };
+enum flags { noSave = 1 << 0, readonly = 1 << 1, triggerPostLoad = 1 << 2, hidden = 1 << 3, noResize = 1 << 4 };
 }
 
 // Called around saving and loading; a class intercepts one by a member function of the same name and parameter.

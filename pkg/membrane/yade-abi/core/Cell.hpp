@@ -23,9 +23,9 @@ public:
     bool hasShear() const { return _hasShear; }
     Vector3r shearPt(const Vector3r&) const;
     Vector3r unshearPt(const Vector3r&) const;
-    // position and velocity of a body cellDist periods away, relative to the body itself
-    Vector3r intrShiftPos(const Vector3i& cellDist) const { return hSize * cellDist.cast<Real>(); }
-    Vector3r intrShiftVel(const Vector3i& cellDist) const { return _vGradTimesPrevH * cellDist.cast<Real>(); }
+    // position and velocity of a body's image so many periods away, relative to the body
+    Vector3r intrShiftPos(const Vector3i& periods) const { return hSize * periods.cast<Real>(); }
+    Vector3r intrShiftVel(const Vector3i& periods) const { return _vGradTimesPrevH * periods.cast<Real>(); }
     Real getVolume() const;
 
     enum { HOMO_NONE = 0, HOMO_POS = 1, HOMO_VEL = 2, HOMO_VEL_2ND = 3 };

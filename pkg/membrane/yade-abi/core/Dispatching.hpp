@@ -61,8 +61,9 @@ public:
                                   const Vector3r& pos1, const Body::id_t id2, const Vector3r& pos2) {
         addForce(id1, force, scene);
         addForce(id2, -force, scene);
-        addTorque(id1, (contactPoint - pos1).cross(force), scene);
-        addTorque(id2, (contactPoint - pos2).cross(-force), scene);
+        const Vector3r arm1 = contactPoint - pos1, arm2 = contactPoint - pos2;
+        addTorque(id1, arm1.cross(force), scene);
+        addTorque(id2, force.cross(arm2), scene);
     }
     YADE_ABI_SERIALIZABLE
 };

@@ -18,10 +18,10 @@ public:
 
     // of the current scene unless one is given
     static const shared_ptr<Material> byId(int id, Scene* scene = nullptr);
-    static const shared_ptr<Material> byId(int id, shared_ptr<Scene> scene) { return byId(id, scene.get()); }
+    static const shared_ptr<Material> byId(int id, shared_ptr<Scene> s) { return byId(id, s.get()); }
     static const shared_ptr<Material> byLabel(const string& label, Scene* scene = nullptr);
-    static const shared_ptr<Material> byLabel(const string& label, shared_ptr<Scene> scene) {
-        return byLabel(label, scene.get());
+    static const shared_ptr<Material> byLabel(const string& label, shared_ptr<Scene> s) {
+        return byLabel(label, s.get());
     }
     static int byLabelIndex(const string& label, Scene* scene = nullptr);
 

@@ -16,11 +16,20 @@ public:
     Quaternionr& ori;
     std::mutex updateMutex;
 
-    enum { DOF_NONE = 0, DOF_X = 1, DOF_Y = 2, DOF_Z = 4, DOF_RX = 8, DOF_RY = 16, DOF_RZ = 32 };
-    static const unsigned DOF_ALL = DOF_X | DOF_Y | DOF_Z | DOF_RX | DOF_RY | DOF_RZ;
-    static const unsigned DOF_XYZ = DOF_X | DOF_Y | DOF_Z;
-    static const unsigned DOF_RXRYRZ = DOF_RX | DOF_RY | DOF_RZ;
-    static unsigned axisDOF(int axis, bool rotational = false) { return 1u << (axis + (rotational ? 3 : 0)); }
+    // one bit per blocked degree of freedom: translations first, then rotations
+    enum {
+        DOF_NONE = 0,
+        DOF_X = 1 << 0,
+        DOF_Y = 1 << 1,
+        DOF_Z = 1 << 2,
+        DOF_RX = 1 << 3,
+        DOF_RY = 1 << 4,
+        DOF_RZ = 1 << 5
+    };
+    static const unsigned DOF_XYZ = 0x07;
+    static const unsigned DOF_RXRYRZ = 0x38;
+    static const unsigned DOF_ALL = DOF_XYZ | DOF_RXRYRZ;
+    static unsigned axisDOF(int axis, bool rotational = false) { return (rotational ? DOF_RX : DOF_X) << axis; }
 
     // text form: any of xyzXYZ
     string blockedDOFs_vec_get() const;

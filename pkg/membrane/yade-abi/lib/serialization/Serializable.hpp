@@ -17,8 +17,8 @@ public:
     template <class Derived> Derived& cast() { return *static_cast<Derived*>(this); }
 
     // identity, not equality of attributes
-    bool operator==(const Serializable& other) { return this == &other; }
-    bool operator!=(const Serializable& other) { return this != &other; }
+    bool operator==(const Serializable& s) { return &s == this; }
+    bool operator!=(const Serializable& s) { return !(*this == s); }
 
     void pyUpdateAttrs(const ::boost::python::dict&);
     string pyStr();
@@ -54,8 +54,8 @@ YADE_ABI_SAVED(Serializable)
     BOOST_CLASS_EXPORT_KEY(yade::Class)                                                                                \
     namespace yade {
 
-// Inside a class. attrs: sequence of tuples (type, name, default, flags, "doc"). inits: sequence of pairs (member, value)
-// for the constructor. ctor: its statements. py: calls of the Python class, as in .def("f", &Class::f).
+// Inside a class. attrs: sequence of tuples (type, name, default, flags, "doc"). inits: sequence of pairs (member,
+// value) for the constructor. ctor: its statements. py: calls of the Python class, as in .def("f", &Class::f).
 #define YADE_CLASS_BASE_DOC(Class, Base, doc) YADE_CLASS_BASE_DOC_ATTRS_INIT_CTOR_PY(Class, Base, doc, , , , )
 #define YADE_CLASS_BASE_DOC_ATTRS(Class, Base, doc, attrs)                                                             \
     YADE_CLASS_BASE_DOC_ATTRS_INIT_CTOR_PY(Class, Base, doc, attrs, , , )

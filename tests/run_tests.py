@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Runs all tests by YADE's own runner: `yade -n -x tests/run_tests.py [--full] [MODULE ...]`.
+
+--full adds the long ones. MODULE, as `test_creases`, keeps to the tests named.
+"""
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+# YADE keeps __file__ for itself.
+sys.path.insert(0, str(Path(sys.argv[0]).resolve().parent))
+
+
+def main():
+    """Run the tests; returns the exit status."""
+    parser = argparse.ArgumentParser(prog="run_tests", description="Run the tests in YADE.")
+    parser.add_argument("--full", action="store_true", help="also run the long tests")
+    parser.add_argument("modules", nargs="*", metavar="MODULE", help="as test_creases; default all")
+    arguments = parser.parse_args()
+
+    import all_tests
+    import support
+    import yade.tests
+
+    if arguments.full:
+        os.environ[support.FULL] = "1"
+    all_tests.chosen = arguments.modules
+    result = yade.tests.testModule("all_tests")
+    return 0 if result.wasSuccessful() and result.testsRun else 1
+
+
+sys.exit(main())

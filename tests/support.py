@@ -1,0 +1,261 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What the tests share: small membranes, forces of a state, the released sail, the main run."""
+
+import atexit
+import contextlib
+import io
+import os
+import shutil
+import subprocess
+import tempfile
+import unittest
+from functools import lru_cache
+from pathlib import Path
+
+import membrane
+import numpy as np
+from membrane import measures, sail, scene
+from membrane.mesh import sail_mesh
+from membrane.parameters import SailParameters
+from yade import wrapper as yade
+
+ROOT = Path(__file__).resolve().parents[1]
+FULL = "MEMBRANE_FULL_TESTS"
+O = yade.Omega()  # noqa: E741, YADE's own name for it
+
+
+def long(test):
+    """Mark a test, or a class of tests, that runs only with --full."""
+    return unittest.skipUnless(os.environ.get(FULL), "long; run with --full")(test)
+
+
+class SceneTest(unittest.TestCase):
+    """A test that starts from an empty scene."""
+
+    def setUp(self):
+        O.reset()
+
+
+class Sheet:
+    """A membrane in the scene, whose forces can be asked for in any state, without motion.
+
+    Attributes
+    ----------
+    membrane : Membrane
+    engine : MembraneForceEngine
+        Its attributes may be set between two questions.
+    """
+
+    def __init__(self, nodes, triangles=(), *, material=None, engine=None, **options):
+        self.rest = np.asarray(nodes, dtype=float)
+        self.membrane = scene.add_membrane(self.rest, triangles, material=material, **options)
+        self.engine = membrane.MembraneForceEngine(
+            membrane=self.membrane, forceTimeStep=True, **(engine or {})
+        )
+        self.loop = interaction_loop(self.membrane)
+        self.states = [O.bodies[i].state for i in self.membrane.bodyIds]
+        self.masses = np.array(self.membrane.masses)
+
+    def place(self, positions, velocities=None):
+        """Put the nodes at `positions` (N, 3) [m] with `velocities` (N, 3) [m/s], default 0."""
+        velocities = np.zeros_like(positions) if velocities is None else velocities
+        for state, x, v in zip(self.states, np.asarray(positions).tolist(), velocities.tolist()):
+            state.pos, state.vel = x, v
+        return self
+
+    def _forces(self, *engines):
+        O.engines = [yade.ForceResetter(), *engines]
+        O.step()
+        return np.array([O.forces.f(i, True) for i in self.membrane.bodyIds])
+
+    def side_forces(self):
+        """Forces (N, 3) [N] of the interaction loop: the sides, without damping."""
+        return self._forces(self.loop)
+
+    def engine_forces(self):
+        """Forces (N, 3) [N] of the engine: creases, damping, drag."""
+        return self._forces(self.engine)
+
+    def all_forces(self):
+        """Forces (N, 3) [N] of both."""
+        return self._forces(self.loop, self.engine)
+
+    def run_engines(self, *, gravity=(0, 0, 0), ledger=False):
+        """Set O.engines to those of a run in time; returns the ledger or None."""
+        newton = yade.NewtonIntegrator(damping=0, gravity=gravity)
+        book = [membrane.MembraneLedger(forces=self.engine, gravity=gravity)] if ledger else []
+        O.engines = [yade.ForceResetter(), self.loop, self.engine, newton, *book]
+        return book[0] if book else None
+
+    def positions(self):
+        """Present positions (N, 3) [m]."""
+        return np.array([state.pos for state in self.states])
+
+    def velocities(self):
+        """Present velocities (N, 3) [m/s]; they belong to half a step before the positions."""
+        return np.array([state.vel for state in self.states])
+
+
+def interaction_loop(net, *laws):
+    """The InteractionLoop of a membrane, with further `laws`."""
+    return yade.InteractionLoop(
+        [membrane.Ig2_Sphere_Sphere_MembraneGeom()],
+        [membrane.Ip2_MembraneMat_MembraneMat_MembranePhys(membrane=net)],
+        [membrane.Law2_MembraneGeom_MembranePhys_Buckling(), *laws],
+    )
+
+
+def unit_film(poisson=0.34, density=1.0):
+    """Material with E h = 1 N/m."""
+    return scene.film(young=1.0, poisson=poisson, density=density, thickness=1.0)
+
+
+def rotation(rng):
+    """A random rotation matrix (3, 3)."""
+    matrix, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    return matrix * np.sign(np.linalg.det(matrix))
+
+
+def grid(cells, length=0.02, jitter=0.0, rng=None):
+    """Flat square sheet of `cells` x `cells` squares cut in two: nodes (N, 3) [m], triangles.
+
+    `jitter` moves the nodes in their plane by up to that share of a cell.
+    """
+    rows = cells + 1
+    i, j = np.meshgrid(np.arange(rows), np.arange(rows), indexing="ij")
+    nodes = length * np.column_stack([i.ravel(), j.ravel(), np.zeros(rows * rows)])
+    if jitter:
+        nodes[:, :2] += jitter * length * rng.uniform(-1, 1, size=(len(nodes), 2))
+    corner = (i * rows + j)[:-1, :-1].ravel()
+    a, b, c, d = corner, corner + rows, corner + rows + 1, corner + 1
+    return nodes, np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+
+
+def film_of_the_sail(**parameters):
+    """The sail without tethers: mesh, nodes (F, 3) [m]; flat."""
+    mesh = sail_mesh(**parameters)
+    return mesh, mesh.nodes[: mesh.film_size]
+
+
+def plane_stress_stiffness(corners, young=1.0, poisson=0.34, thickness=1.0):
+    """Stiffnesses (3,) [N/m] of the sides opposite the corners (3, 3) of a triangle.
+
+    Straight from the definition: the springs hold the energy of the film in uniaxial stress
+    along each side in turn; strains from the strain tensor, not from the paper's p_ij.
+    """
+    sides = np.roll(corners, -1, axis=0) - np.roll(corners, -2, axis=0)
+    length = np.linalg.norm(sides, axis=1)
+    along = sides / length[:, None]
+    area = 0.5 * np.linalg.norm(np.cross(corners[1] - corners[0], corners[2] - corners[0]))
+    cosine2 = (along @ along.T) ** 2
+    strain = (cosine2 - poisson * (1 - cosine2)) / young
+    energy = np.full(3, 0.5 / young * thickness * area)
+    return np.linalg.solve(0.5 * (strain * length) ** 2, energy)
+
+
+def fold_angle(a, b, c, d, valley):
+    """Angle [rad] between ABC and BAD in (-pi/2, 3 pi/2], by turning about AB from one to the other.
+
+    Seen along AB with C to the right, the film's upper side is up: a valley opens from C upwards.
+    """
+    along = (b - a) / np.linalg.norm(b - a)
+    ahead = (c - a) - along * np.dot(c - a, along)
+    ahead /= np.linalg.norm(ahead)
+    up = np.cross(along, ahead)
+    turn = np.angle(complex(np.dot(d - a, ahead), np.dot(d - a, up)))
+    turn = turn if valley else -turn
+    return (turn + np.pi / 2) % (2 * np.pi) - np.pi / 2
+
+
+def load_engines():
+    """The scene's engines by class name, after loading."""
+    return {type(engine).__name__: engine for engine in O.engines}
+
+
+def node_states(net):
+    """Positions and velocities (2, N, 3) of a membrane's nodes in the scene."""
+    states = [O.bodies[i].state for i in net.bodyIds]
+    return np.array([[s.pos for s in states], [s.vel for s in states]])
+
+
+@lru_cache(maxsize=None)
+def scratch():
+    """A folder that goes away with the process."""
+    folder = tempfile.mkdtemp(prefix="membrane-tests-")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return Path(folder)
+
+
+@contextlib.contextmanager
+def quiet():
+    """Keep progress bars off the terminal."""
+    with contextlib.redirect_stderr(io.StringIO()):
+        yield
+
+
+@lru_cache(maxsize=None)
+def released_sail():
+    """File with the paper's sail just after its release, at its own time step.
+
+    The spin-up is cut short: the state need not be at rest to the last digit.
+    """
+    O.reset()
+    parameters = SailParameters(spin_up_tolerance=1e-3)
+    mesh, spinning = sail.build(parameters)
+    with quiet():
+        sail.spin_up(spinning, parameters)
+    O.dt = parameters.dt
+    scene.release(spinning, parameters.omega, mesh.guide_nodes.ravel())
+    path = scratch() / "released.yade.gz"
+    O.save(str(path))
+    O.reset()
+    return path
+
+
+class MainRun:
+    """The main run at the defaults, done once.
+
+    Attributes
+    ----------
+    parameters : SailParameters
+    folder : Path
+    summary : dict
+    history : dict of (S,) float
+    """
+
+    def __init__(self):
+        from membrane.output import read_history
+
+        O.reset()
+        self.parameters = SailParameters()
+        self.folder = scratch() / "main_run"
+        with quiet():
+            self.summary = sail.deploy(self.parameters, self.folder, pictures=False)
+        self.history = read_history(self.folder / "history.csv")
+        self.phases = np.column_stack([self.history[f"phase_difference_{i}"] for i in range(4)])
+        O.reset()
+
+
+@lru_cache(maxsize=None)
+def main_run():
+    """The MainRun of this process."""
+    return MainRun()
+
+
+def run_yade(script, *arguments, threads=1, folder=None):
+    """Run `yade -n -x` on a script in `folder`; returns the CompletedProcess, its output as text."""
+    package = str(Path(membrane.__file__).parents[1])
+    path = os.pathsep.join(filter(None, [package, os.environ.get("PYTHONPATH")]))
+    return subprocess.run(
+        ["yade", "-n", "-x", f"-j{threads}", str(script), *map(str, arguments)],
+        cwd=folder or scratch(),
+        env={**os.environ, "PYTHONPATH": path, "MPLBACKEND": "Agg"},
+        capture_output=True,
+        text=True,
+        timeout=600,
+    )
+
+
+def tips_of(mesh, positions):
+    """Azimuths (4,) of the tips [rad]."""
+    return measures.tip_azimuths(mesh, positions)
