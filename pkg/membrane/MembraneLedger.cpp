@@ -1,16 +1,27 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneLedger.hpp"
 #include "mechanics/SideForce.hpp"
+#include <cmath>
 #include <core/Scene.hpp>
 
 namespace yade {
 
 YADE_PLUGIN((MembraneLedger));
 
+namespace {
+
+/// A vector turned about -z by `angle` [rad]: the chord of a driven node's step before, from that of this step.
+Vector3r turnedBack(const Vector3r& v, Real angle) {
+    const Real c = std::cos(angle), s = std::sin(angle);
+    return {c * v[0] + s * v[1], c * v[1] - s * v[0], v[2]};
+}
+
+} // namespace
+
 void MembraneLedger::action() {
     if (!forces || !forces->membrane) throw std::runtime_error("MembraneLedger: forces is not set, or has no membrane");
     const Membrane& membrane = *forces->membrane;
-    const ::membrane::Points &x = forces->positions(), &before = forces->velocities();
+    const ::membrane::Points& x = forces->positions();
     if (x.empty()) throw std::runtime_error("MembraneLedger: its MembraneForceEngine must run in the same step");
 
     // Elastic forces once more, so that what other engines put on the nodes is known by difference.
@@ -26,28 +37,35 @@ void MembraneLedger::action() {
         elasticForces[s.b] -= force;
     }
 
+    // Work from the step before to this one: mean of both forces times the velocity between them.
     kinetic = potential = angularMomentum = 0.;
-    vector<Real> rates(6, 0.);
+    vector<Real> arriving(5, 0.), leaving(5, 0.);
+    Real torque = 0.;
     const auto& states = forces->states();
     for (std::size_t i = 0; i < x.size(); ++i) {
         const State& state = *states[i];
-        const Vector3r total = scene->forces.getForce(membrane.bodyIds[i]);
         const bool driven = (state.blockedDOFs & State::DOF_XYZ) == State::DOF_XYZ;
-        const Vector3r v = driven ? Vector3r(state.angVel.cross(x[i])) : Vector3r(0.5 * (before[i] + state.vel));
+        const Vector3r total = scene->forces.getForce(membrane.bodyIds[i]);
         const Vector3r &fCrease = forces->creaseForces()[i], &fDamping = forces->dampingForces()[i],
                        &fDrag = forces->dragForces()[i];
-        rates[0] += fCrease.dot(v);
-        rates[1] += fDamping.dot(v);
-        rates[2] += fDrag.dot(v);
-        if (driven) {
-            rates[3] -= total.dot(v); // the support's force is minus the sum of all others
-            continue;
-        }
-        rates[4] += (total - elasticForces[i] - fCrease - fDamping - fDrag).dot(v);
-        rates[5] += x[i][0] * total[1] - x[i][1] * total[0];
-        kinetic += 0.5 * state.mass * v.squaredNorm();
+        const Vector3r other = total - elasticForces[i] - fCrease - fDamping - fDrag;
+        const Vector3r after = state.vel;
+        const Vector3r before = driven ? turnedBack(after, state.angVel[2] * scene->dt) : forces->velocities()[i];
+        const auto addPowers = [&](vector<Real>& powers, const Vector3r& v) {
+            powers[0] += fCrease.dot(v);
+            powers[1] += fDamping.dot(v);
+            powers[2] += fDrag.dot(v);
+            // What holds a driven node bears the sum of all forces on it.
+            powers[driven ? 3 : 4] += driven ? -total.dot(v) : other.dot(v);
+        };
+        addPowers(arriving, before);
+        addPowers(leaving, after);
+        if (driven) continue;
+        kinetic += 0.5 * state.mass * before.dot(after);
         potential -= state.mass * gravity.dot(x[i]);
-        angularMomentum += state.mass * (x[i][0] * v[1] - x[i][1] * v[0]);
+        const Vector3r mean = 0.5 * (before + after);
+        angularMomentum += state.mass * (x[i][0] * mean[1] - x[i][1] * mean[0]);
+        torque += x[i][0] * total[1] - x[i][1] * total[0];
     }
     time = scene->time;
 
@@ -56,10 +74,12 @@ void MembraneLedger::action() {
         initialAngularMomentum = angularMomentum;
         started = true;
     } else {
-        Real* const integrals[] = {&creaseWork, &dampingWork, &dragWork, &drivenWork, &contactWork, &angularImpulse};
-        for (std::size_t i = 0; i < rates.size(); ++i) *integrals[i] += 0.5 * scene->dt * (lastRates[i] + rates[i]);
+        Real* const works[] = {&creaseWork, &dampingWork, &dragWork, &drivenWork, &contactWork};
+        for (std::size_t i = 0; i < arriving.size(); ++i) *works[i] += 0.5 * scene->dt * (lastPowers[i] + arriving[i]);
+        angularImpulse += 0.5 * scene->dt * (lastTorque + torque);
     }
-    lastRates = rates;
+    lastPowers = leaving;
+    lastTorque = torque;
 }
 
 Real MembraneLedger::crease() const {

@@ -14,15 +14,15 @@ public:
 
     // clang-format off
     YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MembraneLedger, GlobalEngine,
-        "Energies of a :yref:`Membrane` and the work done on it, all at the time of this step's forces. The leapfrog's velocities lie half a "
-        "step before and after; their mean belongs to the positions, and with it force times velocity is the change of kinetic energy to "
-        "the last digit. Works are integrals by the trapezoidal rule since the first step. Put it right after NewtonIntegrator. Nodes with "
-        "blocked translations are driven and turn about the z axis with their angVel.",
+        "Energies of a :yref:`Membrane` and the work done on it, at the time of this step's forces. The leapfrog's velocities v-, v+ lie half a "
+        "step before and after; with m v- v+ / 2 for kinetic energy, and the mean of two steps' forces times the velocity between them for work, "
+        "energy is conserved to the last digit in a linear system at any time step. Put it right after NewtonIntegrator, and set its damping to 0. "
+        "Nodes with all translations blocked are driven and turn about the z axis with their angVel.",
         ((shared_ptr<MembraneForceEngine>, forces, , , "The engine of the crease, damping and drag forces."))
         ((Vector3r, gravity, Vector3r::Zero(), , "NewtonIntegrator's gravity [m/s²]."))
         ((bool, started, false, Attr::readonly, "Whether the first step was seen."))
         ((Real, time, 0., Attr::readonly, "Time to which all values belong [s]."))
-        ((Real, kinetic, 0., Attr::readonly, "Kinetic energy of the free nodes [J]."))
+        ((Real, kinetic, 0., Attr::readonly, "Kinetic energy of the free nodes [J], m v- v+ / 2."))
         ((Real, elastic, 0., Attr::readonly, "Strain energy of all sides [J]."))
         ((Real, potential, 0., Attr::readonly, "Potential energy of gravity of the free nodes [J], 0 at the origin."))
         ((Real, initial, 0., Attr::readonly, "kinetic + elastic + potential at the first step [J]."))
@@ -34,7 +34,8 @@ public:
         ((Real, angularMomentum, 0., Attr::readonly, "Angular momentum of the free nodes about z [N m s]."))
         ((Real, angularImpulse, 0., Attr::readonly, "Integral of the torque about z of all forces on the free nodes [N m s]."))
         ((Real, initialAngularMomentum, 0., Attr::readonly, "Angular momentum about z at the first step [N m s]."))
-        ((vector<Real>, lastRates, , (Attr::readonly | Attr::hidden), "Powers [W] of crease, damping, drag, driven nodes, contact; torque [N m]."))
+        ((vector<Real>, lastPowers, , (Attr::readonly | Attr::hidden), "Powers [W] of crease, damping, drag, driven nodes, others at the velocities after the last step."))
+        ((Real, lastTorque, 0., (Attr::readonly | Attr::hidden), "Torque about z [N m] in the last step."))
         ,
         ,
         .add_property("crease", &MembraneLedger::crease, "Energy stored in the creases [J]; with the law 'paper' and unequal heights only nearly minus creaseWork.")
