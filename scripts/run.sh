@@ -23,7 +23,8 @@ END
 }
 
 # Debian packages to build and run, and to format.
-run_packages=(yade python3-numpy python3-matplotlib python3-vtk9 g++ cmake make libboost-dev libeigen3-dev python3-dev)
+run_packages=(yade python3-numpy python3-matplotlib python3-vtk9
+    g++ cmake make libboost-dev libeigen3-dev python3-dev libgtest-dev)
 format_packages=(clang-format black python3-flake8 shellcheck)
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)

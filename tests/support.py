@@ -167,8 +167,8 @@ def fold_angle(a, b, c, d, valley):
     return (turn + np.pi / 2) % (2 * np.pi) - np.pi / 2
 
 
-def load_engines():
-    """The scene's engines by class name, after loading."""
+def engines_by_class():
+    """The scene's engines by class name."""
     return {type(engine).__name__: engine for engine in O.engines}
 
 

@@ -18,13 +18,15 @@ bool Law2_MembraneGeom_MembranePhys_Buckling::go(shared_ptr<IGeom>& geomBase, sh
     const auto& geom = *static_cast<MembraneGeom*>(geomBase.get());
     auto& phys = *static_cast<MembranePhys*>(physBase.get());
 
-    const Real tension = ::membrane::sideTension(geom.length, phys.kn, phys.restLength, phys.criticalLength);
-    if (!std::isfinite(geom.length)) {
-        faults::record(scene, "Membrane: the side between bodies #" + std::to_string(link->getId1()) + " and #" +
-                                  std::to_string(link->getId2()) + " has the length " + std::to_string(geom.length) +
-                                  " m");
+    const auto fault = [&](const std::string& what) {
+        faults::record(scene, "Membrane: bodies #" + std::to_string(link->getId1()) + " and #" +
+                                  std::to_string(link->getId2()) + " " + what);
         return true;
-    }
+    };
+    if (!(phys.restLength > 0.)) return fault("interact but are no side of the membrane");
+    if (!std::isfinite(geom.length)) return fault("are " + std::to_string(geom.length) + " m apart");
+
+    const Real tension = ::membrane::sideTension(geom.length, phys.kn, phys.restLength, phys.criticalLength);
     phys.normalForce = -tension * geom.normal;
     addForce(link->getId1(), -phys.normalForce, scene);
     addForce(link->getId2(), phys.normalForce, scene);

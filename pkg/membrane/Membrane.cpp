@@ -43,10 +43,10 @@ void Membrane::postLoad(Membrane&) {
     input.cables = cables;
     input.pointMasses = pointMasses;
     if (material) {
-        input.young = material->young;
-        input.poisson = material->poisson;
+        input.young = young_ = material->young;
+        input.poisson = poisson_ = material->poisson;
+        input.thickness = thickness_ = material->thickness;
         input.density = material->density;
-        input.thickness = material->thickness;
     }
     input.cableStiffness = cableStiffness;
     input.cableDensity = cableDensity;
@@ -55,6 +55,13 @@ void Membrane::postLoad(Membrane&) {
     input.allowNegativeStiffness = allowNegativeStiffness;
     rest_ = ::membrane::restState(input);
     if (!bodyIds.empty()) indexSides();
+}
+
+void Membrane::checkUnchanged() const {
+    if (material && (material->young != young_ || material->poisson != poisson_ || material->thickness != thickness_))
+        throw std::runtime_error(
+            "Membrane: young, poisson or thickness of its material was changed after the membrane was "
+            "made; make a new one");
 }
 
 void Membrane::indexSides() {

@@ -17,6 +17,8 @@ public:
     void postLoad(Membrane&);
 
     const ::membrane::RestState& rest() const { return rest_; }
+    /// Throws std::runtime_error if the material is no longer the one from which the rest state was computed.
+    void checkUnchanged() const;
     /// Index in rest().sides of the side between two bodies; -1 if there is none.
     int sideBetween(Body::id_t a, Body::id_t b) const;
     /// States of the nodes' bodies in the scene. Throws std::runtime_error naming a node without a body.
@@ -80,6 +82,7 @@ public:
 
 private:
     ::membrane::RestState rest_;
+    Real young_ = 0., poisson_ = 0., thickness_ = 0.; ///< with which rest_ was computed
     std::unordered_map<std::uint64_t, int> sideOfBodies_;
 
     void indexSides();

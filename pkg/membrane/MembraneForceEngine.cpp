@@ -43,6 +43,7 @@ void MembraneForceEngine::postLoad(MembraneForceEngine&) {
     if (!(theta0 >= 0. && theta0 <= Mathr::PI)) refuse("theta0", theta0, "in [0, pi]");
     if (creaseLaw != "paper" && creaseLaw != "conservative")
         refuse("creaseLaw", creaseLaw, "'paper' or 'conservative'");
+    if (timeStepCheckPeriod <= 0) refuse("timeStepCheckPeriod", timeStepCheckPeriod, "> 0");
     preparedFor_ = nullptr;
 }
 
@@ -60,7 +61,8 @@ void MembraneForceEngine::action() {
     faults::raise(scene);
     if (preparedFor_ != scene) prepare(*scene);
     gather();
-    if (scene->dt != checkedStep_) checkTimeStep();
+    if (scene->dt != checkedStep_ || scene->iter % timeStepCheckPeriod == 0) checkTimeStep();
+    lastStep_ = scene->iter;
 
     if (beta > 0.) addCreases();
     if (zeta > 0.) addDamping();
@@ -72,7 +74,12 @@ void MembraneForceEngine::action() {
 void MembraneForceEngine::prepare(Scene& now) {
     if (!membrane) throw std::runtime_error("MembraneForceEngine: membrane is not set");
     states_ = membrane->states(now);
+    membrane->checkUnchanged();
     const std::size_t n = states_.size();
+    for (std::size_t i = 0; i < n; ++i)
+        if (!(states_[i]->mass > 0.) || !std::isfinite(states_[i]->mass))
+            throw std::runtime_error("Membrane: the mass " + std::to_string(states_[i]->mass) + " kg of body #" +
+                                     std::to_string(membrane->bodyIds[i]) + " must be finite and > 0");
     for (::membrane::Points* points : {&x_, &v_, &creaseForces_, &dampingForces_, &dragForces_})
         points->assign(n, Vector3r::Zero());
     damping_.clear();

@@ -15,6 +15,8 @@ public:
     const ::membrane::Points& positions() const { return x_; }
     vector<Vector3r> lastPositions() const { return x_; }
     const ::membrane::Points& velocities() const { return v_; }
+    /// Step in which the forces were last computed; -1: none yet.
+    long lastStep() const { return lastStep_; }
     const vector<shared_ptr<State>>& states() const { return states_; }
     /// Forces of this step on each node [N].
     const ::membrane::Points& creaseForces() const { return creaseForces_; }
@@ -40,6 +42,7 @@ public:
         ((Real, zeta, 0., Attr::triggerPostLoad, "Damping ratio zeta [-], >= 0; 0: none."))
         ((Real, airDensity, 0., Attr::triggerPostLoad, "Density of the air [kg/m³], >= 0; 0: none."))
         ((bool, forceTimeStep, false, , "Run even if O.dt is above criticalTimeStep()."))
+        ((int, timeStepCheckPeriod, 5000, , "Steps between two checks of O.dt against criticalTimeStep(), which changes with the state; also checked when O.dt changes. > 0."))
         ((Real, creasePower, 0., Attr::readonly, "Power of the crease forces in the last step [W], at the velocities half a step before."))
         ((Real, dampingPower, 0., Attr::readonly, "Power of the damping forces in the last step [W], <= 0."))
         ((Real, dragPower, 0., Attr::readonly, "Power of the air drag in the last step [W], <= 0."))
@@ -61,6 +64,7 @@ private:
     ::membrane::Points x_, v_, creaseForces_, dampingForces_, dragForces_;
     const Scene* preparedFor_ = nullptr;
     Real checkedStep_ = -1.;
+    long lastStep_ = -1;
 
     void prepare(Scene& now);
     void gather();

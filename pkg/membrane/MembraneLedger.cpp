@@ -16,13 +16,20 @@ Vector3r turnedBack(const Vector3r& v, Real angle) {
     return {c * v[0] + s * v[1], c * v[1] - s * v[0], v[2]};
 }
 
+/// 1 in the directions in which a body may move freely, 0 in those that are blocked.
+Vector3r freeDirections(const State& state) {
+    const auto open = [&state](unsigned direction) { return state.blockedDOFs & direction ? 0. : 1.; };
+    return {open(State::DOF_X), open(State::DOF_Y), open(State::DOF_Z)};
+}
+
 } // namespace
 
 void MembraneLedger::action() {
     if (!forces || !forces->membrane) throw std::runtime_error("MembraneLedger: forces is not set, or has no membrane");
     const Membrane& membrane = *forces->membrane;
     const ::membrane::Points& x = forces->positions();
-    if (x.empty()) throw std::runtime_error("MembraneLedger: its MembraneForceEngine must run in the same step");
+    if (x.empty() || forces->lastStep() != scene->iter)
+        throw std::runtime_error("MembraneLedger: its MembraneForceEngine must run in the same step, before it");
 
     // Elastic forces once more, so that what other engines put on the nodes is known by difference.
     ::membrane::Points elasticForces(x.size(), Vector3r::Zero());
@@ -44,28 +51,30 @@ void MembraneLedger::action() {
     const auto& states = forces->states();
     for (std::size_t i = 0; i < x.size(); ++i) {
         const State& state = *states[i];
-        const bool driven = (state.blockedDOFs & State::DOF_XYZ) == State::DOF_XYZ;
+        const Vector3r free = freeDirections(state), held = Vector3r::Ones() - free;
         const Vector3r total = scene->forces.getForce(membrane.bodyIds[i]);
         const Vector3r &fCrease = forces->creaseForces()[i], &fDamping = forces->dampingForces()[i],
                        &fDrag = forces->dragForces()[i];
-        const Vector3r other = total - elasticForces[i] - fCrease - fDamping - fDrag;
+        const Vector3r internal = elasticForces[i] + fCrease + fDamping + fDrag, other = total - internal;
         const Vector3r after = state.vel;
-        const Vector3r before = driven ? turnedBack(after, state.angVel[2] * scene->dt) : forces->velocities()[i];
+        const Vector3r before =
+            free.isZero() ? turnedBack(after, state.angVel[2] * scene->dt) : forces->velocities()[i];
         const auto addPowers = [&](vector<Real>& powers, const Vector3r& v) {
             powers[0] += fCrease.dot(v);
             powers[1] += fDamping.dot(v);
             powers[2] += fDrag.dot(v);
-            // What holds a driven node bears the sum of all forces on it.
-            powers[driven ? 3 : 4] += driven ? -total.dot(v) : other.dot(v);
+            powers[3] -= internal.cwiseProduct(held).dot(v); // what holds a node bears the membrane's forces on it
+            powers[4] += other.cwiseProduct(free).dot(v);
         };
         addPowers(arriving, before);
         addPowers(leaving, after);
-        if (driven) continue;
-        kinetic += 0.5 * state.mass * before.dot(after);
-        potential -= state.mass * gravity.dot(x[i]);
-        const Vector3r mean = 0.5 * (before + after);
-        angularMomentum += state.mass * (x[i][0] * mean[1] - x[i][1] * mean[0]);
-        torque += x[i][0] * total[1] - x[i][1] * total[0];
+        kinetic += 0.5 * state.mass * before.cwiseProduct(free).dot(after);
+        potential -= state.mass * gravity.cwiseProduct(free).dot(x[i]);
+        const Vector3r momentum = state.mass * 0.5 * (before + after).cwiseProduct(free);
+        angularMomentum += x[i][0] * momentum[1] - x[i][1] * momentum[0];
+        // The integrator keeps gravity out of the scene's forces.
+        const Vector3r pull = (total + state.mass * gravity).cwiseProduct(free);
+        torque += x[i][0] * pull[1] - x[i][1] * pull[0];
     }
     time = scene->time;
 

@@ -17,7 +17,7 @@ public:
         "Energies of a :yref:`Membrane` and the work done on it, at the time of this step's forces. The leapfrog's velocities v-, v+ lie half a "
         "step before and after; with m v- v+ / 2 for kinetic energy, and the mean of two steps' forces times the velocity between them for work, "
         "energy is conserved to the last digit in a linear system at any time step. Put it right after NewtonIntegrator, and set its damping to 0. "
-        "Nodes with all translations blocked are driven and turn about the z axis with their angVel.",
+        "Blocked directions of a node count as driven; a node with all translations blocked turns about the z axis with its angVel.",
         ((shared_ptr<MembraneForceEngine>, forces, , , "The engine of the crease, damping and drag forces."))
         ((Vector3r, gravity, Vector3r::Zero(), , "NewtonIntegrator's gravity [m/s²]."))
         ((bool, started, false, Attr::readonly, "Whether the first step was seen."))

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembranePhys.hpp"
-#include "Faults.hpp"
 #include "MembraneGeom.hpp"
 #include <core/Interaction.hpp>
 
@@ -14,13 +13,7 @@ void Ip2_MembraneMat_MembraneMat_MembranePhys::go(const shared_ptr<Material>&, c
     const shared_ptr<MembranePhys> phys(new MembranePhys);
     link->phys = phys;
     const int side = membrane ? membrane->sideBetween(link->getId1(), link->getId2()) : -1;
-    if (side < 0) { // it gets a spring without stiffness, since none at all would end the process
-        faults::record(
-            scene, "Ip2_MembraneMat_MembraneMat_MembranePhys: bodies #" + std::to_string(link->getId1()) + " and #" +
-                       std::to_string(link->getId2()) +
-                       (membrane ? " interact but are no side of the membrane" : " interact but membrane is not set"));
-        return;
-    }
+    if (side < 0) return; // without a rest length, which the law records as a fault in every step
     phys->set(membrane->rest().sides[side]);
     if (auto* geom = dynamic_cast<MembraneGeom*>(link->geom.get())) {
         geom->refR1 = geom->refR2 = 0.5 * phys->restLength;

@@ -19,6 +19,7 @@ public:
     YADE_CLASS_BASE_DOC_ATTRS_CTOR(MembranePhys, NormShearPhys,
         "Spring of one side of a :yref:`Membrane`: stiffness :yref:`kn<NormPhys.kn>` k [N/m] and the lengths of paper equations (3), (6). "
         ":yref:`normalForce<NormPhys.normalForce>` [N] follows YADE: along the normal in compression, against it in tension.",
+        ((Real, unusedFriction, 0., (Attr::hidden | Attr::noSave), "Not used [-]. It lies where YADE's setContactFriction, which takes every interaction for a FrictPhys, writes."))
         ((Real, restLength, 0., , "Rest length L0 [m]."))
         ((Real, criticalLength, 0., , "Length l_cr [m] below which the side is buckled and its force constant."))
         ,

@@ -21,6 +21,13 @@ struct StiffCrease {
     double stiffness;
 };
 
+/// Spring between an apex of a crease and its foot on AB, the same in all directions.
+struct FootSpring {
+    int node[3];      ///< A, B, apex
+    double weight[3]; ///< of their displacements in the spring's stretch
+    double stiffness;
+};
+
 std::vector<TautSide> tautSides(const TimeStepInput& in) {
     std::vector<TautSide> sides;
     sides.reserve(in.rest.sides.size());
@@ -28,29 +35,40 @@ std::vector<TautSide> tautSides(const TimeStepInput& in) {
         const Side& s = in.rest.sides[i];
         const Eigen::Vector3d span = in.positions[s.b] - in.positions[s.a];
         const double length = span.norm();
-        if (!(length > 0.)) continue;
-        const double tension = sideTension(length, s.stiffness, s.restLength, s.critical);
-        sides.push_back({s.a, s.b, span / length, std::max(0., s.stiffness), std::max(0., tension / length),
-                         in.damping.empty() ? 0. : in.damping[i]});
+        const double axial = std::max(0., s.stiffness), damping = in.damping.empty() ? 0. : in.damping[i];
+        if (length > 0.) {
+            const double tension = sideTension(length, s.stiffness, s.restLength, s.critical);
+            sides.push_back({s.a, s.b, span / length, axial, std::max(0., tension / length), damping});
+        } else { // its direction is anybody's guess
+            sides.push_back({s.a, s.b, Eigen::Vector3d::UnitX(), axial, axial, damping});
+        }
     }
     return sides;
 }
 
-std::vector<StiffCrease> stiffCreases(const TimeStepInput& in) {
-    std::vector<StiffCrease> creases;
-    if (!(in.crease.bending > 0.)) return creases;
+/// A crease's moment K dtheta, and the turning of its forces with the triangles, which weighs where |force| / height is
+/// not small. Turning couples an apex, its foot and the other triangle; the factor bounds them together.
+void addCreases(const TimeStepInput& in, std::vector<StiffCrease>& creases, std::vector<FootSpring>& feet) {
+    constexpr double turning = 3.;
+    if (!(in.crease.bending > 0.)) return;
     for (const Crease& c : in.rest.creases) {
         const CreaseState s =
             creaseState(c.rest, in.positions[c.a], in.positions[c.b], in.positions[c.c], in.positions[c.d]);
+        const CreaseForces f = creaseForces(c.rest, in.crease, s);
         const double heightC = std::max(s.heightC, leverFloor * c.rest.heightC);
         const double heightD = std::max(s.heightD, leverFloor * c.rest.heightD);
         const Eigen::Vector3d gradC = s.openC / heightC, gradD = s.openD / heightD;
+        // (7) is no gradient where the heights differ: the larger of its two moments bounds both.
+        const double paper =
+            in.crease.bending * c.rest.length *
+            std::max(heightC / (c.rest.heightC * c.rest.heightC), heightD / (c.rest.heightD * c.rest.heightD));
         creases.push_back(
             {{c.a, c.b, c.c, c.d},
              {-(1. - s.footC) * gradC - (1. - s.footD) * gradD, -s.footC * gradC - s.footD * gradD, gradC, gradD},
-             creaseStiffness(c.rest, in.crease) * std::max(1., in.crease.penalty)});
+             (in.crease.conservative ? creaseStiffness(c.rest, in.crease) : paper) * std::max(1., in.crease.penalty)});
+        feet.push_back({{c.a, c.b, c.c}, {-(1. - s.footC), -s.footC, 1.}, turning * f.c.norm() / heightC});
+        feet.push_back({{c.a, c.b, c.d}, {-(1. - s.footD), -s.footD, 1.}, turning * f.d.norm() / heightD});
     }
-    return creases;
 }
 
 } // namespace
@@ -58,7 +76,9 @@ std::vector<StiffCrease> stiffCreases(const TimeStepInput& in) {
 double criticalTimeStep(const TimeStepInput& in) {
     const std::size_t n = in.positions.size();
     const std::vector<TautSide> sides = tautSides(in);
-    const std::vector<StiffCrease> creases = stiffCreases(in);
+    std::vector<StiffCrease> creases;
+    std::vector<FootSpring> feet;
+    addCreases(in, creases, feet);
     std::vector<double> scale(n); // 1/sqrt(m), which makes the problem symmetric; 0 holds a node
     for (std::size_t i = 0; i < n; ++i) scale[i] = in.masses[i] > 0. ? 1. / std::sqrt(in.masses[i]) : 0.;
 
@@ -102,6 +122,12 @@ double criticalTimeStep(const TimeStepInput& in) {
             for (int k = 0; k < 4; ++k) angle += c.gradient[k].dot(x[c.node[k]]);
             for (int k = 0; k < 4; ++k) kx[c.node[k]] += c.stiffness * angle * c.gradient[k];
             stiff += c.stiffness * angle * angle;
+        }
+        for (const FootSpring& f : feet) {
+            Eigen::Vector3d stretch = Eigen::Vector3d::Zero();
+            for (int k = 0; k < 3; ++k) stretch += f.weight[k] * x[f.node[k]];
+            for (int k = 0; k < 3; ++k) kx[f.node[k]] += f.stiffness * f.weight[k] * stretch;
+            stiff += f.stiffness * stretch.squaredNorm();
         }
         if (!(stiff > 0.)) return std::numeric_limits<double>::infinity();
         // dt² stiff + 2 dt damped = 4

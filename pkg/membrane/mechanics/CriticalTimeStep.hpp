@@ -18,9 +18,11 @@ struct TimeStepInput {
 ///
 /// With x(n+1) - 2x(n) + x(n-1) + dt² K x(n)/M + dt C (x(n) - x(n-1))/M = 0 the step is stable while the largest
 /// eigenvalue of (dt² K + 2 dt C)/M is below 4. K counts every side as if taut (a buckled one may become so in the next
-/// step), with the stiffness of its direction under its present tension, and every crease with its penalty; negative
-/// stiffness is left out. The largest eigenvalue is found by power iteration and the step taken 1 % shorter than it
-/// says. \return infinity if nothing can move
+/// step), with the stiffness of its direction under its present tension, and every crease with its penalty and the
+/// turning of its forces; negative stiffness is left out. The largest eigenvalue is found by power iteration and the
+/// step taken 1 % shorter than it says.
+///
+/// \return infinity if nothing can move
 double criticalTimeStep(const TimeStepInput& input);
 
 } // namespace membrane

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include <Eigen/Core>
-#include <Eigen/LU>
+#include <Eigen/Geometry>
 #include <cmath>
 
 namespace membrane {
@@ -20,16 +20,18 @@ inline double triangleArea(const Eigen::Vector3d& a, const Eigen::Vector3d& b, c
 /// \return k_i in the order of `lengths`; negative for the base of a flat triangle; not finite if (5) is singular.
 inline Eigen::Vector3d triangleStiffness(const Eigen::Vector3d& lengths, double area, double young, double poisson,
                                          double thickness) {
+    // With k_i L_i² as unknowns the matrix of (5) is 1 - g off its diagonal and 1 on it, g = 1 - p² belonging to the
+    // third side: solved in closed form it keeps its digits for slivers, where elimination would lose them.
     const Eigen::Vector3d squared = lengths.cwiseAbs2();
-    // Divided by S, B depends on the shape alone, so that the solve is as good at 1e-8 m as at 1e8 m.
-    Eigen::Matrix3d shape;
+    Eigen::Vector3d g;
     for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) {
-            const double p = i == j ? 1. : 1. - 4. * (1. + poisson) * area * area / (squared[i] * squared[j]);
-            shape(i, j) = p * p * squared[j] / area;
-        }
+        const double q = 4. * (1. + poisson) * (area / squared[(i + 1) % 3]) * (area / squared[(i + 2) % 3]);
+        g[i] = q * (2. - q); // p = 1 - q
     }
-    return young * thickness * shape.fullPivLu().solve(Eigen::Vector3d::Ones());
+    const double sum = g.sum(), determinant = sum * sum - 2. * g.squaredNorm() - 2. * g.prod();
+    Eigen::Vector3d k;
+    for (int i = 0; i < 3; ++i) k[i] = young * thickness * (area / squared[i]) * g[i] * (sum - 2. * g[i]) / determinant;
+    return k;
 }
 
 /// Mass [kg] of each corner of a triangle, paper equation (4).

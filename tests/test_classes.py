@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The plugin's classes behave as YADE's own."""
+
+import re
+import unittest
+
+import membrane
+import numpy as np
+from membrane import scene
+from support import O, SceneTest, Sheet, grid
+from yade import system
+from yade import wrapper as yade
+from yade.minieigenHP import Vector3
+
+BASES = {
+    "MembraneMat": ("FrictMat", "ElastMat", "Material", "Serializable"),
+    "Membrane": ("Serializable",),
+    "MembraneGeom": ("ScGeom", "GenericSpheresContact", "IGeom"),
+    "Ig2_Sphere_Sphere_MembraneGeom": ("IGeomFunctor", "Functor"),
+    "MembranePhys": ("NormShearPhys", "NormPhys", "IPhys"),
+    "Ip2_MembraneMat_MembraneMat_MembranePhys": ("IPhysFunctor", "Functor"),
+    "Law2_MembraneGeom_MembranePhys_Buckling": ("LawFunctor", "Functor"),
+    "MembraneForceEngine": ("GlobalEngine", "Engine"),
+    "CentrifugalField": ("FieldApplier", "GlobalEngine", "Engine"),
+    "MembraneLedger": ("GlobalEngine", "Engine"),
+}
+SETTINGS = {
+    "MembraneMat": {"thickness": 1e-5, "young": 2e9, "label": "film"},
+    "Membrane": {"alpha": 5.0, "cableStiffness": 30.0},
+    "MembraneGeom": {"length": 0.5, "penetrationDepth": 0.1},
+    "Ig2_Sphere_Sphere_MembraneGeom": {},
+    "MembranePhys": {"restLength": 0.5, "criticalLength": 0.4, "kn": 3.0},
+    "Ip2_MembraneMat_MembraneMat_MembranePhys": {},
+    "Law2_MembraneGeom_MembranePhys_Buckling": {},
+    "MembraneForceEngine": {"beta": 3.0, "creaseLaw": "conservative", "dead": True},
+    "CentrifugalField": {"omega": 2.0},
+    "MembraneLedger": {"gravity": Vector3(0, 0, -1), "dead": True},
+}
+NUMBERS = ("Real", "Vector3r", "vector<Real>", "vector<Vector3r>")
+
+
+class TestClasses(SceneTest):
+    def each(self):
+        """The classes by name."""
+        self.assertEqual(set(membrane.__all__), set(BASES))
+        for name in BASES:
+            with self.subTest(name):
+                yield name, getattr(membrane, name)
+
+    def test_classes_are_in_the_wrapper(self):
+        for name, cls in self.each():
+            self.assertIs(getattr(yade, name), cls)
+
+    def test_keywords_of_the_constructor_set_attributes(self):
+        for name, cls in self.each():
+            made = cls(**SETTINGS[name])
+            for key, value in SETTINGS[name].items():
+                self.assertEqual(getattr(made, key), value)
+
+    def test_wrong_keyword_raises_attribute_error(self):
+        for _, cls in self.each():
+            with self.assertRaisesRegex(AttributeError, "thicknes_"):
+                cls(thicknes_=1.0)
+
+    def test_positional_argument_raises(self):
+        for _, cls in self.each():
+            with self.assertRaises(Exception):
+                cls(1.0)
+
+    def test_wrong_type_raises(self):
+        for cls, key in ((membrane.MembraneMat, "thickness"), (membrane.MembranePhys, "kn")):
+            with self.assertRaises(TypeError):
+                cls(**{key: "thin"})
+
+    def test_dict_holds_own_and_inherited_attributes(self):
+        for name, cls in self.each():
+            self.assertLessEqual(SETTINGS[name].items(), cls(**SETTINGS[name]).dict().items())
+        for name, own, inherited in (
+            ("MembraneMat", "thickness", "young"),
+            ("MembraneGeom", "length", "normal"),
+            ("MembranePhys", "restLength", "kn"),
+            ("MembraneForceEngine", "dampingPower", "dead"),
+        ):
+            self.assertLessEqual({own, inherited}, getattr(membrane, name)().dict().keys())
+
+    def test_update_attributes_sets_several_at_once(self):
+        engine = membrane.MembraneForceEngine()
+        engine.updateAttrs({"beta": 4.0, "zeta": 0.1})
+        self.assertEqual((engine.beta, engine.zeta), (4.0, 0.1))
+
+    def test_objects_are_instances_of_the_native_bases(self):
+        for name, cls in self.each():
+            made = cls()
+            for base in BASES[name]:
+                self.assertIsInstance(made, getattr(yade, base))
+
+    def test_yade_knows_them_as_children_of_the_native_bases(self):
+        for name, _ in self.each():
+            for base in BASES[name]:
+                self.assertTrue(O.isChildClassOf(name, base), base)
+                if base != "Serializable":
+                    self.assertIn(name, system.childClasses(base))
+            self.assertFalse(O.isChildClassOf(name, "Shape"))
+
+    def test_attributes_can_be_read_only(self):
+        net = membrane.Membrane(alpha=3.0)
+        with self.assertRaises(AttributeError):
+            net.alpha = 4.0
+        with self.assertRaises(AttributeError):
+            membrane.MembraneForceEngine().dampingPower = 1.0
+
+    def test_dispatchers_find_the_functors(self):
+        sheet = Sheet(*grid(1))
+        loop = yade.InteractionLoop(
+            [membrane.Ig2_Sphere_Sphere_MembraneGeom(), yade.Ig2_Facet_Sphere_ScGeom()],
+            [
+                membrane.Ip2_MembraneMat_MembraneMat_MembranePhys(membrane=sheet.membrane),
+                yade.Ip2_FrictMat_FrictMat_FrictPhys(),
+            ],
+            [
+                membrane.Law2_MembraneGeom_MembranePhys_Buckling(),
+                yade.Law2_ScGeom_FrictPhys_CundallStrack(),
+            ],
+        )
+        geometry = loop.geomDispatcher.dispMatrix()
+        self.assertEqual(geometry["Sphere", "Sphere"], "Ig2_Sphere_Sphere_MembraneGeom")
+        physics = loop.physDispatcher.dispMatrix()
+        self.assertEqual(
+            physics["MembraneMat", "MembraneMat"], "Ip2_MembraneMat_MembraneMat_MembranePhys"
+        )
+        self.assertEqual(physics["FrictMat", "FrictMat"], "Ip2_FrictMat_FrictMat_FrictPhys")
+        laws = loop.lawDispatcher.dispMatrix()
+        self.assertEqual(
+            laws["MembraneGeom", "MembranePhys"], "Law2_MembraneGeom_MembranePhys_Buckling"
+        )
+        self.assertEqual(laws["ScGeom", "FrictPhys"], "Law2_ScGeom_FrictPhys_CundallStrack")
+        found = loop.physDispatcher.dispFunctor(membrane.MembraneMat(), yade.FrictMat())
+        self.assertIsInstance(found, yade.Ip2_FrictMat_FrictMat_FrictPhys)
+
+    def test_loop_makes_the_plugins_geometry_and_physics_from_scratch(self):
+        sheet = Sheet(*grid(1))
+        expected = {(i.id1, i.id2): i.phys.dict() for i in O.interactions}
+        self.assertEqual(len(expected), 5)
+        O.interactions.clear()
+        O.engines = [sheet.loop]
+        from yade import utils
+
+        for pair in expected:
+            made = utils.createInteraction(*pair)
+            self.assertIsInstance(made.geom, membrane.MembraneGeom)
+        found = {(i.id1, i.id2): i.phys.dict() for i in O.interactions}
+        self.assertEqual(found, expected)
+
+    def test_interactions_are_real_from_the_start_and_stay(self):
+        nodes, triangles = grid(2)
+        sheet = Sheet(nodes, triangles)
+        self.assertEqual(O.interactions.countReal(), 16)
+        sheet.place(10 * nodes).side_forces()
+        self.assertEqual(O.interactions.countReal(), 16)
+
+    def test_penetration_depth_is_rest_length_minus_length(self):
+        nodes, triangles = grid(2)
+        sheet = Sheet(nodes, triangles)
+        sheet.place(nodes * [1.1, 0.9, 1.0]).side_forces()
+        for i in O.interactions:
+            depth = i.phys.restLength - i.geom.length
+            self.assertAlmostEqual(i.geom.penetrationDepth, depth, delta=1e-15)
+        self.assertGreater(np.ptp([i.geom.penetrationDepth for i in O.interactions]), 1e-3)
+
+    def test_every_class_and_attribute_is_documented_and_numbers_have_units(self):
+        checked = 0
+        for name, cls in self.each():
+            self.assertGreater(len(cls.__doc__), 60)
+            for key, member in vars(cls).items():
+                if key.startswith("_") or key in ("dispIndex", "dispHierarchy"):
+                    continue
+                doc = member.__doc__ or ""
+                self.assertGreater(len(doc), 10, key)
+                kind = re.search(r":yattrtype:`([^`]*)`", doc)
+                if kind and kind.group(1).replace("Vector3r ", "Vector3r") in NUMBERS:
+                    self.assertRegex(doc, r"\[[^\]]+\]", key)
+                    checked += 1
+        self.assertGreater(checked, 25)
+
+    def test_density_and_poisson_of_the_material_are_yades(self):
+        film = scene.film(young=1e9, poisson=0.2, density=900.0, thickness=1e-5)
+        self.assertEqual((film.young, film.poisson, film.density), (1e9, 0.2, 900.0))
+
+
+if __name__ == "__main__":
+    unittest.main()

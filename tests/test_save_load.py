@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A run continued from a saved state is, bit for bit, the run that never stopped.
+
+While something touches the spool this takes YADE's `loopOnSortedInteractions`: contacts that are
+about to begin are not saved, so that after loading a mass on the edge between two facets may sum
+their forces in another order. Without it the difference is of the last digit.
+"""
+
+import unittest
+
+import numpy as np
+from membrane import scene, spool
+from support import O, engines_by_class, node_states, released_sail, scratch
+
+FORMATS = (".xml", ".xml.bz2", ".yade", ":memory:")
+AHEAD, STEPS = 300, 500
+
+
+def bits(net, ledger):
+    """All numbers of the state: nodes, and the ledger's own."""
+    numbers = [value for value in ledger.dict().values() if isinstance(value, (bool, float))]
+    derived = [ledger.crease, ledger.total, ledger.balance]
+    return node_states(net), np.array([*numbers, *derived, O.time, O.dt, O.iter], dtype=float)
+
+
+def place_to_save(form, name):
+    """What to give to O.save and O.load."""
+    return f":memory:{name}" if form == ":memory:" else str(scratch() / f"{name}{form}")
+
+
+@unittest.skipUnless(O.numThreads == 1, "sums are in a fixed order with one thread only")
+class TestContinuation(unittest.TestCase):
+    def continued(self, name):
+        """From the present scene: states that never stopped, and loaded ones by format."""
+        for form in FORMATS:
+            O.save(place_to_save(form, name), quiet=True)
+        net = engines_by_class()["MembraneForceEngine"].membrane
+        start = node_states(net)
+        scene.advance(STEPS)
+        never_stopped = bits(net, engines_by_class()["MembraneLedger"])
+        self.assertGreater(np.abs(never_stopped[0] - start).max(), 1e-6, "nothing moved")
+        loaded = {}
+        for form in FORMATS:
+            O.reset()
+            O.load(place_to_save(form, name), quiet=True)
+            engines = engines_by_class()
+            net = engines["MembraneForceEngine"].membrane
+            np.testing.assert_array_equal(node_states(net), start, form)
+            scene.advance(STEPS)
+            loaded[form] = bits(net, engines["MembraneLedger"])
+        return never_stopped, loaded
+
+    def check(self, name):
+        never_stopped, loaded = self.continued(name)
+        for form, found in loaded.items():
+            for expected, value in zip(never_stopped, found):
+                np.testing.assert_array_equal(value, expected, form)
+
+    def sort_interactions(self):
+        """Let YADE's loop go through the interactions in the order of their ids."""
+        engines_by_class()["InteractionLoop"].loopOnSortedInteractions = True
+
+    def test_deploying_sail(self):
+        O.reset()
+        O.load(str(released_sail()), quiet=True)
+        scene.advance(AHEAD)
+        ledger = engines_by_class()["MembraneLedger"]
+        self.assertTrue(ledger.started)
+        self.assertNotEqual(ledger.creaseWork, 0)
+        self.check("sail")
+
+    def test_tether_wound_onto_the_turning_spool(self):
+        wind_a_tether()
+        self.assertGreater(contacts(), 2)
+        self.sort_interactions()
+        self.check("tether")
+
+    def test_wound_tether_in_any_order_is_the_same_but_for_rounding(self):
+        wind_a_tether()
+        self.assertGreater(contacts(), 2)
+        never_stopped, loaded = self.continued("unsorted")
+        for (places, velocities), _ in loaded.values():
+            places_before, velocities_before = never_stopped[0]
+            np.testing.assert_allclose(places, places_before, rtol=0, atol=1e-14)
+            np.testing.assert_allclose(velocities, velocities_before, rtol=0, atol=1e-9)
+
+
+def contacts():
+    """Number of contacts of tether masses with the spool."""
+    return sum(type(i.phys).__name__ == "FrictPhys" and i.isReal for i in O.interactions)
+
+
+def wind_a_tether():
+    """A taut chain that lies on a quarter of the turning spool; its outer end is held."""
+    O.reset()
+    omega, piece, radius = 40.0, 3e-3, 0.0254
+    arc = np.arange(-13, 1) * piece / radius
+    on_spool = radius * np.column_stack([np.cos(arc), np.sin(arc), np.zeros_like(arc)])
+    away = np.column_stack([np.full(8, radius), np.arange(1, 9) * piece, np.zeros(8)])
+    nodes = np.concatenate([on_spool, away])
+    cables = [(i, i + 1) for i in range(len(nodes) - 1)]
+    tether = scene.add_membrane(0.99 * nodes, [], cables=cables, positions=nodes)
+    ids = tether.bodyIds
+    made = scene.set_engines(
+        tether, driven=[*spool.add_spool(), ids[0]], touching=ids[1:-1], omega=omega, zeta=0.3
+    )
+    made.hold([0, len(nodes) - 1])
+    O.dt = 0.1 * made.forces.criticalTimeStep()
+    scene.advance(2000)
+
+
+class TestSharing(unittest.TestCase):
+    def test_shared_objects_stay_shared(self):
+        O.reset()
+        O.load(str(released_sail()), quiet=True)
+        for form in FORMATS:
+            O.save(place_to_save(form, "shared"), quiet=True)
+            O.reset()
+            O.load(place_to_save(form, "shared"), quiet=True)
+            engines = engines_by_class()
+            forces = engines["MembraneForceEngine"]
+            functor = next(
+                f
+                for f in engines["InteractionLoop"].physDispatcher.functors
+                if hasattr(f, "membrane")
+            )
+            holders = [forces.membrane, functor.membrane, engines["CentrifugalField"].membrane]
+            node = O.bodies[forces.membrane.bodyIds[0]]
+            materials = [holder.material for holder in holders]
+            materials += [node.material, O.materials[node.material.id]]
+            for written in materials:
+                written.frictionAngle += 0.01
+                angles = {material.frictionAngle for material in materials}
+                self.assertEqual(angles, {written.frictionAngle}, form)
+            forces.beta = 7.0
+            self.assertEqual(engines["MembraneLedger"].forces.beta, 7.0, form)
+
+    def test_membrane_keeps_its_mesh_and_rest_state(self):
+        O.reset()
+        O.load(str(released_sail()), quiet=True)
+        names = (
+            "sides", "sideKinds", "restLengths", "stiffnesses", "criticalLengths", "masses", "area",
+            "creases", "creaseSigns", "triangles", "nodes", "bodyIds", "alphaCrease",
+        )  # fmt: skip
+        net = engines_by_class()["MembraneForceEngine"].membrane
+        expected = {name: getattr(net, name) for name in names}
+        self.assertEqual(len(expected["sides"]), 1316)
+        links = {(i.id1, i.id2): i.phys.dict() for i in O.interactions}
+        O.save(place_to_save(".xml", "mesh"), quiet=True)
+        O.reset()
+        O.load(place_to_save(".xml", "mesh"), quiet=True)
+        net = engines_by_class()["MembraneForceEngine"].membrane
+        for name in names:
+            self.assertEqual(getattr(net, name), expected[name], name)
+        self.assertEqual({(i.id1, i.id2): i.phys.dict() for i in O.interactions}, links)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Two threads give the result of one, but for the order of sums."""
+
+import unittest
+from pathlib import Path
+
+import numpy as np
+from membrane import scene
+from support import O, engines_by_class, node_states, released_sail, run_yade, scratch
+
+DRIVER = Path(__file__).with_name("continue_saved.py")
+STEPS, SAIL_SIZE = 1000, 0.455
+
+
+class TestThreads(unittest.TestCase):
+    def run_on(self, threads):
+        """Positions (N, 3) [m] after STEPS steps of the released sail on so many threads."""
+        out = scratch() / f"threads_{threads}.npz"
+        done = run_yade(DRIVER, released_sail(), STEPS, out, threads=threads)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with np.load(out) as found:
+            self.assertEqual(found["threads"], threads)
+            return found["positions"]
+
+    def test_two_threads_give_the_positions_of_one(self):
+        one, two = self.run_on(1), self.run_on(2)
+        O.reset()
+        O.load(str(released_sail()), quiet=True)
+        start = node_states(engines_by_class()["MembraneForceEngine"].membrane)[0]
+        self.assertGreater(np.abs(one - start).max(), 1e-3, "the sail hardly moved")
+        self.assertLess(np.abs(two - one).max(), 1e-9 * SAIL_SIZE)
+        if O.numThreads == 1:
+            scene.advance(STEPS)
+            here = node_states(engines_by_class()["MembraneForceEngine"].membrane)[0]
+            np.testing.assert_array_equal(one, here)
+
+
+if __name__ == "__main__":
+    unittest.main()
