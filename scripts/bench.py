@@ -102,10 +102,11 @@ def deployment(duration):
     scene.advance(steps)
     wall = time.perf_counter() - spun
     omega.timingEnabled = False
+    print(f"\nThe paper's sail: spin-up {spun - start:.1f} s of wall time,")
     print(
-        f"\nThe paper's sail: spin-up {spun - start:.1f} s, then {1e6 * wall / steps:.1f} us a step,"
+        f"then {1e6 * wall / steps:.1f} us a step, so {wall / steps / p.dt:.0f} s for each second"
     )
-    print(f"so {wall / steps / p.dt:.0f} s of wall time for each second of deployment. Of a step:")
+    print("of deployment. Of a step:")
     for engine in sorted(omega.engines, key=lambda e: -e.execTime):
         if engine.execCount:
             name = type(engine).__name__
