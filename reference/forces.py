@@ -61,7 +61,9 @@ def cable_masses(nodes, cables, density):
 def side_lengths_of_triangles(positions, triangles):
     """Lengths (T, 3) [m] of a triangle's sides; column i is the side opposite corner i."""
     ends = [(1, 2), (2, 0), (0, 1)]
-    return np.stack([norm(positions[triangles[:, q]] - positions[triangles[:, p]]) for p, q in ends], 1)
+    return np.stack(
+        [norm(positions[triangles[:, q]] - positions[triangles[:, p]]) for p, q in ends], 1
+    )
 
 
 def triangle_stiffness(lengths, young, poisson, thickness):
@@ -86,7 +88,9 @@ def triangle_stiffness(lengths, young, poisson, thickness):
 
 def side_stiffness(nodes, triangles, young, poisson, thickness):
     """Stiffness of every side of the mesh: {(i, j) with i < j: k [N/m]}; triangles on a side add up, (5)."""
-    shares = triangle_stiffness(side_lengths_of_triangles(nodes, triangles), young, poisson, thickness)
+    shares = triangle_stiffness(
+        side_lengths_of_triangles(nodes, triangles), young, poisson, thickness
+    )
     total = {}
     for corners, share in zip(triangles.tolist(), shares.tolist()):
         for opposite in range(3):
@@ -140,6 +144,15 @@ def side_forces(positions, sides, rest_length, critical, stiffness):
 # --- creases (7), (8) -----------------------------------------------------------------------------------
 
 
+def crease_nodes(triangles, creases):
+    """Nodes A, B, C, D (C, 4) of creases A, B (C, 2): in triangle ABC they run the way that `triangles`
+    (T, 3) gives, in BAD too."""
+    apex = {}
+    for a, b, c in triangles.tolist():
+        apex.update({(a, b): c, (b, c): a, (c, a): b})
+    return np.array([(a, b, apex[a, b], apex[b, a]) for a, b in creases.tolist()])
+
+
 def crease_frame(positions, creases):
     """Geometry of creases (C, 4), columns A, B, C, D: common side AB, tips C and D of the two triangles.
 
@@ -187,7 +200,8 @@ def bending_stiffness(young, thickness):
 def crease_balance(positions, creases, frame, force_c, force_d):
     """Forces (N, 3) of all creases from those on C and D, (C, 3) each, with (8) on A and B.
 
-    The lengths on AB are signed and present ones, so force and moment of each crease are zero.
+    The lengths on AB are signed and present ones: the four forces add up to zero, and so do their moments
+    but for those about AB, which cancel only where F_C l_CE = F_D l_DF.
     """
     foot_c, foot_d = frame["foot_c"][:, None], frame["foot_d"][:, None]
     force_a = -(1.0 - foot_c) * force_c - (1.0 - foot_d) * force_d
@@ -205,7 +219,9 @@ def crease_forces_paper(positions, rest, creases, inside, young, thickness, beta
     now, before = crease_frame(positions, creases), crease_frame(rest, creases)
     theta = angle_of(now, inside)
     penalty = np.where(theta >= 0.0, 1.0, gamma)
-    moment = beta * penalty * bending_stiffness(young, thickness) * before["length"] * (theta - theta0)
+    moment = (
+        beta * penalty * bending_stiffness(young, thickness) * before["length"] * (theta - theta0)
+    )
     # theta is the turn from the face of C to that of D, times inside: forward for C closes it
     force_c = (inside * moment / before["height_c"] ** 2)[:, None] * now["normal_c"]
     force_d = -(inside * moment / before["height_d"] ** 2)[:, None] * now["normal_d"]
@@ -253,9 +269,7 @@ def damping_coefficient(stiffness, masses, sides, zeta):
     return 2.0 * zeta * np.sqrt(stiffness * mean_mass)
 
 
-def damping_forces(
-    positions, velocities, sides, rest_length, stiffness, masses, zeta, cable
-):
+def damping_forces(positions, velocities, sides, rest_length, stiffness, masses, zeta, cable):
     """Damping forces (N, 3) [N] along the sides, (9): against the rate of each side's length.
 
     velocities (N, 3) [m/s]; cable (M,) bool: a cable shorter than its rest length is not damped;

@@ -14,8 +14,9 @@ from pathlib import Path
 
 import membrane
 import numpy as np
-from membrane import measures, sail, scene
+from membrane import sail, scene
 from membrane.mesh import sail_mesh
+from membrane.output import read_history
 from membrane.parameters import SailParameters
 from yade import wrapper as yade
 
@@ -154,7 +155,7 @@ def plane_stress_stiffness(corners, young=1.0, poisson=0.34, thickness=1.0):
 
 
 def fold_angle(a, b, c, d, valley):
-    """Angle [rad] between ABC and BAD in (-pi/2, 3 pi/2], by turning about AB from one to the other.
+    """Angle [rad] between ABC and BAD in (-pi/2, 3 pi/2]: from the one to the other about AB.
 
     Seen along AB with C to the right, the film's upper side is up: a valley opens from C upwards.
     """
@@ -224,8 +225,6 @@ class MainRun:
     """
 
     def __init__(self):
-        from membrane.output import read_history
-
         O.reset()
         self.parameters = SailParameters()
         self.folder = scratch() / "main_run"
@@ -243,7 +242,7 @@ def main_run():
 
 
 def run_yade(script, *arguments, threads=1, folder=None):
-    """Run `yade -n -x` on a script in `folder`; returns the CompletedProcess, its output as text."""
+    """Run `yade -n -x` on a script in `folder`; returns the CompletedProcess, output as text."""
     package = str(Path(membrane.__file__).parents[1])
     path = os.pathsep.join(filter(None, [package, os.environ.get("PYTHONPATH")]))
     return subprocess.run(
@@ -254,8 +253,3 @@ def run_yade(script, *arguments, threads=1, folder=None):
         text=True,
         timeout=600,
     )
-
-
-def tips_of(mesh, positions):
-    """Azimuths (4,) of the tips [rad]."""
-    return measures.tip_azimuths(mesh, positions)

@@ -65,15 +65,16 @@ class TestMesh(Refusals):
         for again in ((0, 1, 2), (2, 1, 0), (1, 2, 0)):
             triangles = [*MESH["triangles"], again]
             text = " ".join(map(str, again))
-            self.mesh_refused(
-                {"triangles": triangles}, f"triangles[2] = ({text})", "repeated"
-            )
+            self.mesh_refused({"triangles": triangles}, f"triangles[2] = ({text})", "repeated")
 
     def test_side_with_three_triangles(self):
         self.mesh_refused(
             {"nodes": NODES, "triangles": [*MESH["triangles"], (0, 1, 4)]},
-            "side (", "third triangle", "triangles[2]", "at most 2",
-        )  # fmt: skip
+            "side (",
+            "third triangle",
+            "triangles[2]",
+            "at most 2",
+        )
 
     def test_crease_that_is_no_side(self):
         self.mesh_refused({"creases": [(2, 3)]}, "creases[0] = (2 3)", "no side of any triangle")
@@ -112,7 +113,11 @@ class TestMesh(Refusals):
         self.mesh_refused({"cables": [(0, 1)]}, "cables[0] = (0 1)", "doubles")
         self.mesh_refused({"cables": [(2, 3), (3, 2)]}, "cables[1] = (3 2)", "doubles")
         self.mesh_refused({"cables": [(2, 9)]}, "cables[0]", "node 9", "0..3")
-        for name, bad in (("cableStiffness", 0.0), ("cableStiffness", -1.0), ("cableDensity", -1.0)):
+        for name, bad in (
+            ("cableStiffness", 0.0),
+            ("cableStiffness", -1.0),
+            ("cableDensity", -1.0),
+        ):
             self.mesh_refused({"cables": [(2, 3)], name: bad}, f"{name} = {bad:g}", "must be")
         nodes = [*NODES[:4], NODES[2]]
         self.mesh_refused({"nodes": nodes, "cables": [(2, 4)]}, "cables[0] = (2 4)", "length 0")
@@ -128,13 +133,20 @@ class TestMesh(Refusals):
     def test_negative_stiffness_is_refused_with_triangle_side_and_angle_unless_allowed(self):
         flat = {
             "nodes": [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.5, 0.1, 0.0)],
-            "triangles": [(0, 1, 2)], "creases": [], "creaseSigns": [],
-        }  # fmt: skip
+            "triangles": [(0, 1, 2)],
+            "creases": [],
+            "creaseSigns": [],
+        }
         angle = 180 - 2 * math.degrees(math.atan(0.1 / 0.5))
         text = self.mesh_refused(
-            flat, "triangles[0] = (0 1 2)", "side (0, 1)", "must be >= 0", "at node 2",
-            "allowNegativeStiffness=True", f"angle of {angle:.4f}",
-        )  # fmt: skip
+            flat,
+            "triangles[0] = (0 1 2)",
+            "side (0, 1)",
+            "must be >= 0",
+            "at node 2",
+            "allowNegativeStiffness=True",
+            f"angle of {angle:.4f}",
+        )
         stiffness = -0.3209 * 3.2e9 * 7.5e-6
         named = float(text.split("stiffness ")[1].split(" N/m")[0])
         self.assertAlmostEqual(named / stiffness, 1, delta=1e-3)
@@ -170,7 +182,11 @@ class TestParameters(Refusals):
             ("poisson", -1.0, "(-1, 0.5]"),
         ):
             self.refused(
-                ValueError, lambda: scene.film(**{name: bad}), f"{name} = {bad:g}", "must be", limits
+                ValueError,
+                lambda: scene.film(**{name: bad}),
+                f"{name} = {bad:g}",
+                "must be",
+                limits,
             )
 
     def test_material_made_bad_later_is_refused_by_the_membrane(self):
@@ -179,8 +195,9 @@ class TestParameters(Refusals):
         self.refused(
             ValueError,
             lambda: membrane.Membrane(material=film, **MESH),
-            "poisson = 0.6", "(-1, 0.5]",
-        )  # fmt: skip
+            "poisson = 0.6",
+            "(-1, 0.5]",
+        )
 
     def test_engine(self):
         for name, bad, limits in (
@@ -203,8 +220,9 @@ class TestParameters(Refusals):
         self.refused(
             ValueError,
             lambda: membrane.MembraneForceEngine(creaseLaw="papper"),
-            "creaseLaw = papper", "'paper' or 'conservative'",
-        )  # fmt: skip
+            "creaseLaw = papper",
+            "'paper' or 'conservative'",
+        )
 
     def test_engines_without_what_they_act_on(self):
         for engine, text in (

@@ -53,7 +53,10 @@ class HingeTest(SceneTest):
         O.reset()
         self.shape, self.sign = shape, sign
         self.sheet = Sheet(
-            hinge(shape, np.pi, sign), TRIANGLES, creases=[(0, 1)], crease_signs=[sign],
+            hinge(shape, np.pi, sign),
+            TRIANGLES,
+            creases=[(0, 1)],
+            crease_signs=[sign],
             allowNegativeStiffness=True,
             engine=dict(beta=beta, gamma=gamma, theta0=theta0, creaseLaw=law),
         )
@@ -62,7 +65,9 @@ class HingeTest(SceneTest):
     def forces(self, theta, turn=None, shift=0.0):
         """Forces (4, 3) [N] of the hinge at an angle [rad]."""
         turn = np.eye(3) if turn is None else turn
-        return self.sheet.place(hinge(self.shape, theta, self.sign) @ turn.T + shift).engine_forces()
+        return self.sheet.place(
+            hinge(self.shape, theta, self.sign) @ turn.T + shift
+        ).engine_forces()
 
     def opening_force(self, theta):
         """Force on D [N] in the direction in which it moves to open the hinge."""
@@ -105,8 +110,11 @@ class TestAngle(HingeTest):
             for triangles in (TRIANGLES, [(0, 3, 1), (2, 0, 1)]):
                 O.reset()
                 sheet = Sheet(
-                    hinge(UNEQUAL, np.pi, MOUNTAIN), triangles, creases=[crease],
-                    crease_signs=[MOUNTAIN], engine={"beta": BETA},
+                    hinge(UNEQUAL, np.pi, MOUNTAIN),
+                    triangles,
+                    creases=[crease],
+                    crease_signs=[MOUNTAIN],
+                    engine={"beta": BETA},
                 )
                 angle = sheet.place(nodes).engine.creaseAngles()[0]
                 self.assertAlmostEqual(angle, 0.8, delta=1e-13)
@@ -114,8 +122,11 @@ class TestAngle(HingeTest):
     def test_turning_the_triangles_over_turns_mountain_into_valley(self):
         nodes = hinge(UNEQUAL, 0.8, MOUNTAIN)
         sheet = Sheet(
-            hinge(UNEQUAL, np.pi, MOUNTAIN), [(0, 2, 1), (1, 3, 0)], creases=[(0, 1)],
-            crease_signs=[VALLEY], engine={"beta": BETA},
+            hinge(UNEQUAL, np.pi, MOUNTAIN),
+            [(0, 2, 1), (1, 3, 0)],
+            creases=[(0, 1)],
+            crease_signs=[VALLEY],
+            engine={"beta": BETA},
         )
         self.assertAlmostEqual(sheet.place(nodes).engine.creaseAngles()[0], 0.8, delta=1e-13)
 
@@ -362,7 +373,10 @@ class TestSwing(SceneTest):
         O.reset()
         shape = (0.5, 0.5, 0.015, 0.015)
         sheet = Sheet(
-            hinge(shape, np.pi, VALLEY), TRIANGLES, creases=[(0, 1)], crease_signs=[VALLEY],
+            hinge(shape, np.pi, VALLEY),
+            TRIANGLES,
+            creases=[(0, 1)],
+            crease_signs=[VALLEY],
             pointMasses=[0, 0, apex_mass, apex_mass],
             engine=dict(beta=BETA, theta0=theta0, creaseLaw=law),
         )
@@ -407,8 +421,12 @@ class TestMaterialOfTheHinge(SceneTest):
         for thickness in (5e-6, 1e-5):
             O.reset()
             sheet = Sheet(
-                hinge(EQUAL, np.pi, VALLEY), TRIANGLES, creases=[(0, 1)], crease_signs=[VALLEY],
-                material=scene.film(thickness=thickness), engine={"beta": BETA},
+                hinge(EQUAL, np.pi, VALLEY),
+                TRIANGLES,
+                creases=[(0, 1)],
+                crease_signs=[VALLEY],
+                material=scene.film(thickness=thickness),
+                engine={"beta": BETA},
             )
             found.append(sheet.place(hinge(EQUAL, 1.0, VALLEY)).engine_forces()[2])
         np.testing.assert_allclose(found[1], 8 * found[0], rtol=1e-12)

@@ -98,8 +98,11 @@ class TestDecay(SceneTest):
     def test_taut_tether_rings_down_at_the_rate_of_equation_9(self):
         stiffness, hanging, held, zeta = 200.0 / LENGTH, 3e-3, 1e-3, 0.03
         sheet = Sheet(
-            [[0, 0, 0], [0, 0, -LENGTH]], cables=[(0, 1)], cableDensity=0.0,
-            pointMasses=[held, hanging], engine={"zeta": zeta},
+            [[0, 0, 0], [0, 0, -LENGTH]],
+            cables=[(0, 1)],
+            cableDensity=0.0,
+            pointMasses=[held, hanging],
+            engine={"zeta": zeta},
         )
         sheet.states[0].blockedDOFs = "xyzXYZ"
         sag = hanging * 9.81 / stiffness

@@ -31,9 +31,20 @@ class TestDeployCommand(unittest.TestCase):
     def test_short_run_leaves_files_and_names_them(self):
         folder = scratch() / "short"
         done = run_yade(
-            SCRIPT, "--out", folder, "--duration", "0.004", "--shapes-interval", "0.001",
-            "--spin-up-tolerance", "0.01", "--beta", "3", "--alpha-crease", "100",
-        )  # fmt: skip
+            SCRIPT,
+            "--out",
+            folder,
+            "--duration",
+            "0.004",
+            "--shapes-interval",
+            "0.001",
+            "--spin-up-tolerance",
+            "0.01",
+            "--beta",
+            "3",
+            "--alpha-crease",
+            "100",
+        )
         self.assertEqual(done.returncode, 0, done.stderr)
         summary = json.loads((folder / "summary.json").read_text())
         self.assertEqual(summary["parameters"]["beta"], 3.0)

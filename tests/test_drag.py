@@ -37,9 +37,7 @@ class TestPlate(SceneTest):
                     ]
                 )
                 expected = -AIR * AREA * abs(np.cos(angle)) * 9.0 / 6 * direction
-                np.testing.assert_allclose(
-                    self.forces(3.0 * direction), [expected] * 3, rtol=1e-12
-                )
+                np.testing.assert_allclose(self.forces(3.0 * direction), [expected] * 3, rtol=1e-12)
 
     def test_plate_edge_on_to_its_velocity_has_no_drag(self):
         normal = np.abs(self.forces([0, 0, 3.0])).max()

@@ -26,7 +26,10 @@ class FreeSail(SceneTest):
         O.reset()
         mesh, flat = film_of_the_sail(**parameters)
         self.sheet = Sheet(
-            flat, mesh.triangles, creases=mesh.creases, crease_signs=mesh.crease_signs,
+            flat,
+            mesh.triangles,
+            creases=mesh.creases,
+            crease_signs=mesh.crease_signs,
             engine={"theta0": np.pi, "creaseLaw": "conservative", **(engine or {})},
         )
         velocities = speed * np.random.default_rng(0).normal(size=flat.shape)

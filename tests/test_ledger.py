@@ -16,7 +16,10 @@ class LedgerTest(SceneTest):
         rng = np.random.default_rng(1)
         nodes, triangles = grid(3)
         self.sheet = Sheet(
-            nodes, triangles, creases=[(4, 5), (9, 10)], crease_signs=[1, -1],
+            nodes,
+            triangles,
+            creases=[(4, 5), (9, 10)],
+            crease_signs=[1, -1],
             engine=engine,
         )
         places = nodes + noise * rng.normal(size=nodes.shape)
@@ -98,7 +101,9 @@ class TestEntries(LedgerTest):
     def test_work_of_a_driven_node_is_that_of_its_holding_force(self):
         omega = 30.0
         sheet = Sheet(
-            [[0.025, 0, 0], [0.05, 0.01, 0]], cables=[(0, 1)], pointMasses=[1e-4, 5e-4],
+            [[0.025, 0, 0], [0.05, 0.01, 0]],
+            cables=[(0, 1)],
+            pointMasses=[1e-4, 5e-4],
             engine={"zeta": 0.05},
         )
         driven = O.bodies[sheet.membrane.bodyIds[0]].state
@@ -107,8 +112,11 @@ class TestEntries(LedgerTest):
         from yade.wrapper import RotationEngine
 
         turn = RotationEngine(
-            ids=[sheet.membrane.bodyIds[0]], angularVelocity=omega, rotationAxis=(0, 0, 1),
-            rotateAroundZero=True, zeroPoint=(0, 0, 0),
+            ids=[sheet.membrane.bodyIds[0]],
+            angularVelocity=omega,
+            rotationAxis=(0, 0, 1),
+            rotateAroundZero=True,
+            zeroPoint=(0, 0, 0),
         )
         O.engines = [O.engines[0], turn, *O.engines[1:]]
         O.dt = 0.05 * sheet.engine.criticalTimeStep()

@@ -130,9 +130,14 @@ class TestVersion(unittest.TestCase):
     def test_plain_python_is_told_to_use_yade(self):
         folder = str(Path(membrane.__file__).parents[1])
         done = subprocess.run(
-            ["/usr/bin/python3", "-c", f"import sys; sys.path.insert(0, {folder!r}); import membrane"],
-            capture_output=True, text=True,
-        )  # fmt: skip
+            [
+                "/usr/bin/python3",
+                "-c",
+                f"import sys; sys.path.insert(0, {folder!r}); import membrane",
+            ],
+            capture_output=True,
+            text=True,
+        )
         self.assertNotEqual(done.returncode, 0)
         last = done.stderr.strip().splitlines()[-1]
         self.assertRegex(last, "ImportError: membrane: no YADE is running.*yade script.py")

@@ -24,7 +24,8 @@ def read_grid(path):
     grid = reader.GetOutput()
     data = grid.GetCellData()
     values = {
-        data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())
+        data.GetArrayName(i): vtk_to_numpy(data.GetArray(i))
+        for i in range(data.GetNumberOfArrays())
     }
     return vtk_to_numpy(grid.GetPoints().GetData()), values, grid.GetNumberOfCells()
 

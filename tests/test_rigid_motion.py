@@ -14,7 +14,9 @@ class TestRigidMotion(SceneTest):
         super().setUp()
         self.mesh, self.flat = film_of_the_sail()
         self.sheet = Sheet(
-            self.flat, self.mesh.triangles, creases=self.mesh.creases,
+            self.flat,
+            self.mesh.triangles,
+            creases=self.mesh.creases,
             crease_signs=self.mesh.crease_signs,
         )
         self.rng = np.random.default_rng(1)

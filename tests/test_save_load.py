@@ -139,9 +139,20 @@ class TestSharing(unittest.TestCase):
         O.reset()
         O.load(str(released_sail()), quiet=True)
         names = (
-            "sides", "sideKinds", "restLengths", "stiffnesses", "criticalLengths", "masses", "area",
-            "creases", "creaseSigns", "triangles", "nodes", "bodyIds", "alphaCrease",
-        )  # fmt: skip
+            "sides",
+            "sideKinds",
+            "restLengths",
+            "stiffnesses",
+            "criticalLengths",
+            "masses",
+            "area",
+            "creases",
+            "creaseSigns",
+            "triangles",
+            "nodes",
+            "bodyIds",
+            "alphaCrease",
+        )
         net = engines_by_class()["MembraneForceEngine"].membrane
         expected = {name: getattr(net, name) for name in names}
         self.assertEqual(len(expected["sides"]), 1316)

@@ -149,9 +149,14 @@ class TestSheetOfSides(SceneTest):
     def test_film_creases_and_cables_buckle_by_their_own_parameters(self):
         mesh = sail_mesh()
         net = Membrane(
-            material=scene.film(), nodes=mesh.nodes.tolist(), triangles=mesh.triangles.tolist(),
-            creases=mesh.creases.tolist(), creaseSigns=mesh.crease_signs.tolist(),
-            cables=mesh.cables.tolist(), alpha=100.0, alphaCrease=1000.0,
+            material=scene.film(),
+            nodes=mesh.nodes.tolist(),
+            triangles=mesh.triangles.tolist(),
+            creases=mesh.creases.tolist(),
+            creaseSigns=mesh.crease_signs.tolist(),
+            cables=mesh.cables.tolist(),
+            alpha=100.0,
+            alphaCrease=1000.0,
         )
         creases = {tuple(sorted(pair)) for pair in mesh.creases.tolist()}
         cables = {tuple(sorted(pair)) for pair in mesh.cables.tolist()}
@@ -170,8 +175,11 @@ class TestTether(SceneTest):
     def setUp(self):
         super().setUp()
         self.sheet = Sheet(
-            [[0, 0, 0], [LENGTH, 0, 0]], cables=[(0, 1)], cableStiffness=200.0,
-            pointMasses=[1e-4, 3e-4], engine={"zeta": 0.5},
+            [[0, 0, 0], [LENGTH, 0, 0]],
+            cables=[(0, 1)],
+            cableStiffness=200.0,
+            pointMasses=[1e-4, 3e-4],
+            engine={"zeta": 0.5},
         )
 
     def pull(self, length, rate):

@@ -113,7 +113,9 @@ class TestStiffness(unittest.TestCase):
         mesh = sail_mesh()
         material = scene.film()
         net = Membrane(
-            material=material, nodes=mesh.nodes.tolist(), triangles=mesh.triangles.tolist(),
+            material=material,
+            nodes=mesh.nodes.tolist(),
+            triangles=mesh.triangles.tolist(),
             cables=mesh.cables.tolist(),
         )
         expected = {}
@@ -163,8 +165,12 @@ class TestMasses(unittest.TestCase):
     def test_cables_and_point_masses_add_to_their_nodes(self):
         nodes = [[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0], [0.1, 0.1, 0], [0.1, 0.3, 0]]
         net = Membrane(
-            material=scene.film(), nodes=nodes, triangles=[(0, 1, 2)], cables=[(2, 3), (3, 4)],
-            cableDensity=2e-4, pointMasses=[0, 0, 0, 0, 0.36e-3],
+            material=scene.film(),
+            nodes=nodes,
+            triangles=[(0, 1, 2)],
+            cables=[(2, 3), (3, 4)],
+            cableDensity=2e-4,
+            pointMasses=[0, 0, 0, 0, 0.36e-3],
         )
         third = 1420.0 * 7.5e-6 * 0.005 / 3
         expected = [third, third, third + 1e-5, 1e-5 + 2e-5, 2e-5 + 0.36e-3]

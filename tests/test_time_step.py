@@ -86,8 +86,14 @@ class TimeStepTest(SceneTest):
         rng = np.random.default_rng(seed)
         nodes, triangles = grid(3, jitter=0.15, rng=rng)
         self.sheet = Sheet(
-            nodes, triangles, creases=CREASES, crease_signs=SIGNS, alpha=1e12, alphaCrease=1e12,
-            pointMasses=[] if point_masses is None else point_masses, engine=engine,
+            nodes,
+            triangles,
+            creases=CREASES,
+            crease_signs=SIGNS,
+            alpha=1e12,
+            alphaCrease=1e12,
+            pointMasses=[] if point_masses is None else point_masses,
+            engine=engine,
         )
         self.sheet.place(stretch * nodes)
         return self.sheet
@@ -125,14 +131,24 @@ class TestEstimate(TimeStepTest):
 
     def test_creases_that_rule_the_step(self):
         sides = self.make().engine.criticalTimeStep()
-        for beta, zeta in ((3e5, 0.0), (3e6, 0.1)):
-            sheet = self.make(beta=beta, zeta=zeta)
-            bent = sheet.rest + 3e-3 * np.random.default_rng(9).normal(size=sheet.rest.shape)
-            sheet.place(bent)
-            stiff, damped = side_matrices(sheet, bent, zeta)
-            stiff += crease_matrix(sheet, bent, beta, 100.0)
+        for beta, zeta in ((3e7, 0.0), (3e7, 0.1)):
+            # At the natural angle, where the creases' own forces turn with nothing.
+            sheet = self.make(beta=beta, zeta=zeta, theta0=np.pi, creaseLaw="conservative")
+            stiff, damped = side_matrices(sheet, sheet.rest, zeta)
+            stiff += crease_matrix(sheet, sheet.rest, beta, 100.0)
             self.check(exact_step(stiff, damped, sheet.masses))
             self.assertLess(sheet.engine.criticalTimeStep(), 0.7 * sides)
+
+    def test_strained_creases_are_never_taken_for_softer(self):
+        beta = 3e5
+        sheet = self.make(beta=beta, creaseLaw="conservative")
+        bent = sheet.rest + 3e-3 * np.random.default_rng(9).normal(size=sheet.rest.shape)
+        sheet.place(bent)
+        stiff, damped = side_matrices(sheet, bent, 0.0)
+        stiff += crease_matrix(sheet, bent, beta, 100.0)
+        exact = exact_step(stiff, damped, sheet.masses)
+        self.assertLessEqual(sheet.engine.criticalTimeStep(), exact)
+        self.assertGreater(sheet.engine.criticalTimeStep(), 0.5 * exact)
 
     def test_held_nodes_do_not_count(self):
         sheet = self.make()

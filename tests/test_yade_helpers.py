@@ -32,7 +32,10 @@ class TestHelpers(SceneTest):
         super().setUp()
         mesh, flat = film_of_the_sail()
         self.sheet = Sheet(
-            flat, mesh.triangles, creases=mesh.creases, crease_signs=mesh.crease_signs,
+            flat,
+            mesh.triangles,
+            creases=mesh.creases,
+            crease_signs=mesh.crease_signs,
             engine={"beta": 30.0, "zeta": 0.02},
         )
         self.contact = yade.Law2_ScGeom_FrictPhys_CundallStrack()
@@ -168,7 +171,8 @@ class TestHelpers(SceneTest):
     def test_recorders(self):
         for made in (
             yade.VTKRecorder(
-                fileName=str(scratch() / "vtk_"), iterPeriod=1,
+                fileName=str(scratch() / "vtk_"),
+                iterPeriod=1,
                 recorders=["spheres", "intr", "stress", "force", "velocity", "bstresses", "id"],
             ),
             yade.ForceRecorder(ids=[1, 2], file=str(scratch() / "forces.txt"), iterPeriod=1),

@@ -13,7 +13,7 @@ import numpy as np
 from membrane import geometry, scene
 from yade import wrapper as yade
 
-from . import Check
+from . import Check, at_most, recorded
 from .disk_mesh import disk_mesh, scatter, side_stiffness, triangle_stress
 
 OMEGA = 10.0  # spin rate [rad/s]
@@ -455,7 +455,7 @@ def band_means(errors, r, areas):
     return np.array([np.bincount(band, areas * e, DISK_BANDS) / weights for e in errors.T])
 
 
-def spin_disk(cells, *, even=True, turns=1.5):
+def spin_disk(cells, *, even=True, poisson=DISK_POISSON, turns=1.5):
     """Spin a free disk of film of radius 1 m and measure its stress and lowest modes.
 
     Parameters
@@ -464,6 +464,8 @@ def spin_disk(cells, *, even=True, turns=1.5):
         From the centre to the edge.
     even : bool
         Mesh of nearly equilateral triangles, or rings of 6 k nodes; see `disk_mesh`.
+    poisson : float
+        Of the film.
     turns : float
 
     Returns
@@ -472,33 +474,32 @@ def spin_disk(cells, *, even=True, turns=1.5):
     """
     yade.Omega().reset()
     scale = DISK_DENSITY * OMEGA**2  # rho Omega2 a2 [Pa]
-    centre = scale * disk_stress(0.0, DISK_POISSON)[0]
-    young = (1 - DISK_POISSON) * centre / DISK_STRAIN
+    centre = scale * disk_stress(0.0, poisson)[0]
+    young = (1 - poisson) * centre / DISK_STRAIN
     nodes, triangles = disk_mesh(cells, even)
-    film = scene.film(young, DISK_POISSON, DISK_DENSITY, DISK_THICKNESS)
+    film = scene.film(young, poisson, DISK_DENSITY, DISK_THICKNESS)
     net = scene.add_membrane(nodes, triangles, material=film)
     sail = scene.set_engines(net)
     spun = spinning_net(nodes, net)
     place(sail, spun)
     unbalanced = imbalance(sail)
 
-    shares = side_stiffness(nodes, triangles, young, DISK_POISSON, DISK_THICKNESS)
+    shares = side_stiffness(nodes, triangles, young, poisson, DISK_THICKNESS)
     stress = triangle_stress(spun, triangles, shares, nodes, DISK_THICKNESS)
     areas = geometry.triangle_areas(spun, triangles)
     middle = spun[triangles].mean(axis=1)[:, :2]
     r = np.linalg.norm(middle, axis=1)
     polar = polar_stress(stress, middle)
     film_error, lattice_error = (
-        (polar - scale * disk_stress(r, poisson)) / centre
-        for poisson in (DISK_POISSON, LATTICE_POISSON)
+        (polar - scale * disk_stress(r, ratio)) / centre for ratio in (poisson, LATTICE_POISSON)
     )
 
     masses = sail.masses()
     names, shapes = disk_shapes(spun, masses)
     kick = np.outer(AMPLITUDE * OMEGA * shapes.sum(axis=1), [0, 0, 1])
     times, moved = spin(sail, spun, kick, turns)
-    measured = np.sqrt(frequencies2(times, moved[:, :, 2], shapes, masses))
-    by_name = {n: measured[[m == n for m in names]] for n in DISK_MODES}
+    frequency = np.sqrt(frequencies2(times, moved[:, :, 2], shapes, masses))
+    by_name = {n: frequency[[m == n for m in names]] for n in DISK_MODES}
     lengths = np.array([net.lengths((spun + shift).tolist()) for shift in moved[::5]])
     return SpunDisk(
         frequency={name: float(f.mean()) for name, f in by_name.items()},
@@ -520,6 +521,8 @@ TETHER_SOURCE = "mass in the centrifugal field: sqrt(1 + r0/L), sqrt(r0/L)"
 STRESS_SOURCE = "(3 + nu)/8 rho Omega2 (a2 - r2) and its hoop stress"
 DISK_SOURCE = "Lamb and Southwell 1921, Proc. R. Soc. A 99"
 BALANCE_SOURCE = "equilibrium in the turning frame"
+TENSION_SOURCE = "integral of m Omega2 r"
+TAUT_SOURCE = "both stresses are tensions; at the edge the radial one is 0"
 LINEAR = "linear elements, lumped masses"
 
 # Relative errors allowed. On 20 segments the frequencies of modes 1, 2, 3 are wrong by 0.07 %,
@@ -528,16 +531,15 @@ FINE_STRING, COARSE_STRING = (2e-4, 1e-3, 2e-3), (1e-3, 1e-2, 3e-2)
 FINE_DISK, COARSE_DISK = 5e-3, 2e-2
 LATTICE = 2e-3
 STRESS = 1e-2
-SHEARED_STRESS = 0.25
 TETHER = 1e-4
 BALANCE = 1e-6
 ORDER = 0.15
 DISK_ORDER_MODES = ("(2,0)", "(0,1)", "(3,0)")  # (1,0), the tilted disk, is exact on every mesh
 
 
-def relative(name, measured, target, share, source):
-    """A Check of `measured` against `target` within `share` of it."""
-    return Check(name, float(measured), float(target), share * float(target), source)
+def relative(name, value, target, share, source):
+    """A Check of `value` against `target` within `share` of it."""
+    return Check(name, float(value), float(target), share * float(target), source)
 
 
 def worst_order(values):
@@ -562,25 +564,19 @@ def string_checks(spun, segments, hub, tolerances):
     """Tension and frequencies of a string (SpunString); `tolerances` (M,) of the modes [-]."""
     name = f"string, {segments} segments, hub {hub:g} L"
     checks = [
-        Check(f"{name}: unbalanced force", spun.imbalance, 0, BALANCE, BALANCE_SOURCE),
-        Check(
-            f"{name}: error of tension",
-            spun.tension_error,
-            0,
-            tolerances[0],
-            "integral of m Omega2 r",
-        ),
+        at_most(f"{name}: unbalanced force", spun.imbalance, BALANCE, BALANCE_SOURCE),
+        at_most(f"{name}: error of tension", spun.tension_error, tolerances[0], TENSION_SOURCE),
     ]
     for i, (mode, tolerance) in enumerate(zip(STRING_MODES, tolerances)):
         flap2 = string_flap(mode, hub) ** 2
         pairs = ("flap", spun.flap[i], flap2), ("in-plane", spun.in_plane[i], flap2 - 1)
-        for kind, measured2, target2 in pairs:
+        for kind, found2, target2 in pairs:
             title = f"{name}: {kind} {mode}"
             if target2 < 1e-9:  # turns freely about the axis
-                free = Check(f"{title} (omega/Omega)2", measured2, 0, 1e-6, STRING_SOURCE)
+                free = Check(f"{title} (omega/Omega)2", found2, 0, 1e-6, STRING_SOURCE)
                 checks.append(free)
             else:
-                pair = measured2**0.5, target2**0.5
+                pair = found2**0.5, target2**0.5
                 checks.append(relative(f"{title} omega/Omega", *pair, tolerance, STRING_SOURCE))
     return checks
 
@@ -588,13 +584,13 @@ def string_checks(spun, segments, hub, tolerances):
 def disk_checks(spun, cells, tolerance):
     """Stress and frequencies of a disk (SpunDisk); `tolerance` of the frequencies [-]."""
     name = f"disk, {cells} cells"
-    radial, hoop = np.abs(spun.film_error).max(axis=1)
+    radial, hoop = np.abs(spun.film_error).max(axis=1).tolist()
     checks = [
-        Check(f"{name}: unbalanced force", spun.imbalance, 0, BALANCE, BALANCE_SOURCE),
-        Check(f"{name}: error of radial stress", radial, 0, STRESS, STRESS_SOURCE),
-        Check(f"{name}: error of hoop stress", hoop, 0, STRESS, STRESS_SOURCE),
-        Check(f"{name}: buckled sides", spun.buckled, 0, 0, "tension everywhere"),
-        Check(f"{name}: compression", spun.compression, 0, 2e-2, "tension everywhere"),
+        at_most(f"{name}: unbalanced force", spun.imbalance, BALANCE, BALANCE_SOURCE),
+        at_most(f"{name}: error of radial stress", radial, STRESS, STRESS_SOURCE),
+        at_most(f"{name}: error of hoop stress", hoop, STRESS, STRESS_SOURCE),
+        at_most(f"{name}: buckled sides", spun.buckled, 0, TAUT_SOURCE),
+        at_most(f"{name}: compression of a triangle", spun.compression, 2e-2, TAUT_SOURCE),
         Check(f"{name}: (1,0) omega/Omega", spun.frequency["(1,0)"], 1, 1e-6, DISK_SOURCE),
     ]
     for mode in DISK_ORDER_MODES:
@@ -611,7 +607,7 @@ def disk_convergence(spun, meshes):
     """Orders of convergence of disks on three meshes or more, and where they converge to."""
     values = [[s.frequency[mode] for mode in DISK_ORDER_MODES] for s in spun]
     limits = [disk_frequency(*DISK_MODES[mode], LATTICE_POISSON) for mode in DISK_ORDER_MODES]
-    off = np.abs(np.array(values[-1]) / limits - 1).max()
+    off = float(np.abs(np.array(values[-1]) / limits - 1).max())
     stress = [np.sqrt(np.mean(s.lattice_error**2)) for s in spun[-2:]]
     name = "order of convergence"
     return [
@@ -619,12 +615,40 @@ def disk_convergence(spun, meshes):
         Check(
             f"disk: {name}, stress in rings", float(np.log2(stress[0] / stress[1])), 2, 0.3, LINEAR
         ),
-        Check(
+        at_most(
             f"disk, {meshes[-1]} cells: frequencies off those of Poisson ratio 1/3",
-            float(off),
-            0,
+            off,
             LATTICE,
             DISK_SOURCE,
+        ),
+    ]
+
+
+def disk_limits(finest, cells):
+    """How wrong disks are that the model does not fit; not errors of the plugin."""
+    sheared = spin_disk(SHEARED_CELLS, even=False)
+    soft = spin_disk(DISK_CELLS[0], poisson=0.0)
+    return [
+        recorded(
+            f"disk, {SHEARED_CELLS} cells of sheared triangles: error of stress",
+            float(np.abs(sheared.film_error).max()),
+            0.2034,
+            1e-3,
+            "a net of sheared triangles is anisotropic; largest at the centre, does not converge",
+        ),
+        recorded(
+            f"disk, {DISK_CELLS[0]} cells, film of Poisson ratio 0: error of stress",
+            float(np.abs(soft.film_error).max()),
+            0.1866,
+            1e-3,
+            "a net of equilateral triangles has Poisson ratio 1/3 whatever the film's",
+        ),
+        recorded(
+            f"disk, {cells} cells: share of sides in compression",
+            finest.compressed,
+            0.0206,
+            1e-3,
+            "at the edge, across the tension; alpha = 0 would let them buckle",
         ),
     ]
 
@@ -656,8 +680,5 @@ def checks(full):
     found += disk_checks(spun[-1], meshes[-1], FINE_DISK if full else COARSE_DISK)
     if full:
         found += disk_convergence(spun, meshes)
-        sheared = spin_disk(SHEARED_CELLS, even=False)
-        name = f"disk, {SHEARED_CELLS} cells of sheared triangles: error of stress"
-        error = np.abs(sheared.film_error).max()
-        found.append(Check(name, float(error), 0, SHEARED_STRESS, "as found: it does not converge"))
+        found += disk_limits(spun[-1], meshes[-1])
     return found
