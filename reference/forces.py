@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The paper's forces a second time, in NumPy, to hold the plugin against.
 
-Written from the paper's equations (4)...(10) and the readings in MODEL.md, not from the plugin's sources.
-Nothing here imports YADE or the plugin, and nothing of the plugin imports this.
+Written from the paper's equations (4)...(10) and the readings in MODEL.md, not from the plugin's
+sources. Nothing here imports YADE or the plugin, and nothing of the plugin imports this.
 
-Shapes: N nodes, T triangles, M sides, C creases. SI units, angles in radians. Forces are those on the
-nodes, (N, 3), in N. Functions do not change their arguments.
+Shapes: N nodes, T triangles, M sides, C creases. SI units, angles in radians. Forces are those on
+the nodes, (N, 3), in N. Functions do not change their arguments.
 """
 
 import numpy as np
@@ -36,7 +36,7 @@ def triangle_normals(positions, triangles):
     return twice / length[:, None], 0.5 * length
 
 
-# --- mass (4) -------------------------------------------------------------------------------------------
+# --- mass (4) ---
 
 
 def node_masses(nodes, triangles, density, thickness):
@@ -50,12 +50,12 @@ def node_masses(nodes, triangles, density, thickness):
 
 
 def cable_masses(nodes, cables, density):
-    """Mass (N,) [kg] of cables (K, 2) of given density [kg/m] at the nodes: half of each segment to an end."""
+    """Mass (N,) [kg] at the nodes of cables (K, 2) of a density [kg/m]: half of each to its ends."""
     half = 0.5 * density * norm(nodes[cables[:, 1]] - nodes[cables[:, 0]])
     return add_up(len(nodes), cables.ravel(), np.repeat(half, 2))
 
 
-# --- stiffness (5) --------------------------------------------------------------------------------------
+# --- stiffness (5) ---
 
 
 def side_lengths_of_triangles(positions, triangles):
@@ -69,7 +69,8 @@ def side_lengths_of_triangles(positions, triangles):
 def triangle_stiffness(lengths, young, poisson, thickness):
     """Stiffness (T, 3) [N/m] that a triangle gives to its three sides, (5).
 
-    lengths (T, 3) [m] at rest; young [Pa]; poisson [-]; thickness [m]. Column i belongs to lengths[:, i].
+    lengths (T, 3) [m] at rest; young [Pa]; poisson [-]; thickness [m]. Column i belongs to
+    lengths[:, i].
     """
     semi = 0.5 * lengths.sum(axis=1)
     # Kahan's order keeps Heron's formula accurate for needles
@@ -87,7 +88,7 @@ def triangle_stiffness(lengths, young, poisson, thickness):
 
 
 def side_stiffness(nodes, triangles, young, poisson, thickness):
-    """Stiffness of every side of the mesh: {(i, j) with i < j: k [N/m]}; triangles on a side add up, (5)."""
+    """Stiffness of every side, (5): {(i, j) with i < j: k [N/m]}; triangles at a side add up."""
     shares = triangle_stiffness(
         side_lengths_of_triangles(nodes, triangles), young, poisson, thickness
     )
@@ -99,7 +100,7 @@ def side_stiffness(nodes, triangles, young, poisson, thickness):
     return total
 
 
-# --- side tension (3), (6) ------------------------------------------------------------------------------
+# --- side tension (3), (6) ---
 
 
 def critical_length(rest_length, alpha, thickness):
@@ -111,12 +112,12 @@ def critical_length(rest_length, alpha, thickness):
 
 
 def side_tension(length, rest_length, critical, stiffness):
-    """Tension (M,) [N], positive when stretched, (3) with (6); all arguments (M,), [m] and [N/m]."""
+    """Tension (M,) [N], positive when stretched, (3) with (6); arguments (M,) in [m] and [N/m]."""
     return stiffness * (np.maximum(length, critical) - rest_length)
 
 
 def side_energy(length, rest_length, critical, stiffness):
-    """Energy (M,) [J] of the sides: the integral of the tension over the length from the rest length."""
+    """Energy (M,) [J] of the sides: the integral of the tension from the rest length on."""
     bounded = np.maximum(length, critical) - rest_length
     return 0.5 * stiffness * bounded**2 + stiffness * bounded * np.minimum(length - critical, 0.0)
 
@@ -141,12 +142,14 @@ def side_forces(positions, sides, rest_length, critical, stiffness):
     return pull_together(len(positions), sides, direction, tension)
 
 
-# --- creases (7), (8) -----------------------------------------------------------------------------------
+# --- creases (7), (8) ---
 
 
 def crease_nodes(triangles, creases):
-    """Nodes A, B, C, D (C, 4) of creases A, B (C, 2): in triangle ABC they run the way that `triangles`
-    (T, 3) gives, in BAD too."""
+    """Nodes A, B, C, D (C, 4) of creases A, B (C, 2) between triangles ABC and BAD.
+
+    The corners of triangles (T, 3) run the same way round on both sides of a crease.
+    """
     apex = {}
     for a, b, c in triangles.tolist():
         apex.update({(a, b): c, (b, c): a, (c, a): b})
@@ -154,11 +157,11 @@ def crease_nodes(triangles, creases):
 
 
 def crease_frame(positions, creases):
-    """Geometry of creases (C, 4), columns A, B, C, D: common side AB, tips C and D of the two triangles.
+    """Geometry of creases (C, 4), columns A, B, C, D: common side AB, tips C and D.
 
-    Returns a dict: length (C,) of AB; height_c, height_d (C,) over AB [m]; foot_c, foot_d (C,) where the
-    feet E, F lie on AB, 0 at A and 1 at B, beyond that outside; axis (C, 3) along AB; up_c, up_d (C, 3)
-    unit vectors from the feet to C and D; normal_c = axis x up_c, normal_d = axis x up_d.
+    Returns a dict: length (C,) of AB; height_c, height_d (C,) over AB [m]; foot_c, foot_d (C,)
+    where the feet E, F lie on AB, 0 at A and 1 at B, beyond that outside; axis (C, 3) along AB;
+    up_c, up_d (C, 3) unit vectors from the feet to C and D; normal_c, normal_d = axis x up.
     """
     a, b, c, d = (positions[creases[:, column]] for column in range(4))
     length = norm(b - a)
@@ -200,8 +203,8 @@ def bending_stiffness(young, thickness):
 def crease_balance(positions, creases, frame, force_c, force_d):
     """Forces (N, 3) of all creases from those on C and D, (C, 3) each, with (8) on A and B.
 
-    The lengths on AB are signed and present ones: the four forces add up to zero, and so do their moments
-    but for those about AB, which cancel only where F_C l_CE = F_D l_DF.
+    The lengths on AB are signed and present ones: the four forces add up to zero, and so do their
+    moments but for those about AB, which cancel only where F_C l_CE = F_D l_DF.
     """
     foot_c, foot_d = frame["foot_c"][:, None], frame["foot_d"][:, None]
     force_a = -(1.0 - foot_c) * force_c - (1.0 - foot_d) * force_d
@@ -213,8 +216,8 @@ def crease_balance(positions, creases, frame, force_c, force_d):
 def crease_forces_paper(positions, rest, creases, inside, young, thickness, beta, gamma, theta0):
     """Forces (N, 3) [N] of creases by (7) and (8) as printed, with the rest lengths in (7).
 
-    positions, rest (N, 3) [m]; creases (C, 4); inside (C,), see crease_angle; young [Pa]; thickness [m];
-    beta, gamma [-]; theta0 [rad].
+    positions, rest (N, 3) [m]; creases (C, 4); inside (C,), see crease_angle; young [Pa]; thickness
+    [m]; beta, gamma [-]; theta0 [rad].
     """
     now, before = crease_frame(positions, creases), crease_frame(rest, creases)
     theta = angle_of(now, inside)
@@ -229,14 +232,17 @@ def crease_forces_paper(positions, rest, creases, inside, young, thickness, beta
 
 
 def crease_modulus(rest, creases, young, thickness, beta):
-    """K (C,) [N m] of the conservative law: beta E J l_AB over the mean of the two heights, at rest."""
+    """K (C,) [N m] of the conservative law: beta E J l_AB over the mean of the rest heights."""
     before = crease_frame(rest, creases)
     mean_height = 0.5 * (before["height_c"] + before["height_d"])
     return beta * bending_stiffness(young, thickness) * before["length"] / mean_height
 
 
 def crease_energy(positions, rest, creases, inside, young, thickness, beta, gamma, theta0):
-    """Energy (C,) [J] of the conservative law: K [(theta - theta0)^2 + (gamma - 1) min(theta, 0)^2] / 2."""
+    """Energy (C,) [J] of the conservative law.
+
+    K [(theta - theta0)^2 + (gamma - 1) min(theta, 0)^2] / 2; arguments as in crease_forces_paper.
+    """
     modulus = crease_modulus(rest, creases, young, thickness, beta)
     theta = crease_angle(positions, creases, inside)
     through = np.minimum(theta, 0.0)
@@ -248,8 +254,9 @@ def crease_forces_conservative(
 ):
     """Forces (N, 3) [N] of creases by the conservative law: minus the gradient of crease_energy.
 
-    The angle changes by one over the present height with a tip that moves along its face's normal; A and B
-    follow from (8), since rigid motion changes no angle. Arguments as in crease_forces_paper.
+    The angle changes by one over the present height with a tip that moves along its face's normal;
+    A and B follow from (8), since rigid motion changes no angle. Arguments as in
+    crease_forces_paper.
     """
     modulus = crease_modulus(rest, creases, young, thickness, beta)
     now = crease_frame(positions, creases)
@@ -260,11 +267,11 @@ def crease_forces_conservative(
     return crease_balance(positions, creases, now, force_c, force_d)
 
 
-# --- damping (9) ----------------------------------------------------------------------------------------
+# --- damping (9) ---
 
 
 def damping_coefficient(stiffness, masses, sides, zeta):
-    """Coefficient c (M,) [N s/m] = 2 zeta sqrt(k m), (9); m the mean of the masses (N,) [kg] at the ends."""
+    """Coefficient c (M,) [N s/m] = 2 zeta sqrt(k m), (9); m the mean mass of the two ends [kg]."""
     mean_mass = 0.5 * (masses[sides[:, 0]] + masses[sides[:, 1]])
     return 2.0 * zeta * np.sqrt(stiffness * mean_mass)
 
@@ -272,8 +279,8 @@ def damping_coefficient(stiffness, masses, sides, zeta):
 def damping_forces(positions, velocities, sides, rest_length, stiffness, masses, zeta, cable):
     """Damping forces (N, 3) [N] along the sides, (9): against the rate of each side's length.
 
-    velocities (N, 3) [m/s]; cable (M,) bool: a cable shorter than its rest length is not damped;
-    a side of the film always is.
+    velocities (N, 3) [m/s]; stiffness (M,) not negative; cable (M,) bool: a cable shorter than its
+    rest length is not damped, a side of the film always is.
     """
     direction, length = side_geometry(positions, sides)
     rate = dot(velocities[sides[:, 1]] - velocities[sides[:, 0]], direction)
@@ -282,7 +289,7 @@ def damping_forces(positions, velocities, sides, rest_length, stiffness, masses,
     return pull_together(len(positions), sides, direction, coefficient * rate)
 
 
-# --- air drag (10) --------------------------------------------------------------------------------------
+# --- air drag (10) ---
 
 
 def drag_forces(positions, velocities, triangles, air_density):

@@ -23,6 +23,7 @@ BASES = {
     "MembraneForceEngine": ("GlobalEngine", "Engine"),
     "CentrifugalField": ("FieldApplier", "GlobalEngine", "Engine"),
     "MembraneLedger": ("GlobalEngine", "Engine"),
+    "MembraneTimeStepper": ("TimeStepper", "GlobalEngine", "Engine"),
 }
 SETTINGS = {
     "MembraneMat": {"thickness": 1e-5, "young": 2e9, "label": "film"},
@@ -35,6 +36,7 @@ SETTINGS = {
     "MembraneForceEngine": {"beta": 3.0, "creaseLaw": "conservative", "dead": True},
     "CentrifugalField": {"omega": 2.0},
     "MembraneLedger": {"gravity": Vector3(0, 0, -1), "dead": True},
+    "MembraneTimeStepper": {"fraction": 0.3, "active": False},
 }
 NUMBERS = ("Real", "Vector3r", "vector<Real>", "vector<Vector3r>")
 

@@ -18,6 +18,7 @@ CLASSES = (
     "MembraneForceEngine",
     "CentrifugalField",
     "MembraneLedger",
+    "MembraneTimeStepper",
 )
 
 

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "MembraneTimeStepper.hpp"
+#include <core/Scene.hpp>
+#include <cmath>
+
+namespace yade {
+
+YADE_PLUGIN((MembraneTimeStepper));
+
+void MembraneTimeStepper::postLoad(MembraneTimeStepper&) {
+    if (!(fraction > 0. && fraction <= 1.))
+        throw std::invalid_argument("MembraneTimeStepper: fraction = " + std::to_string(fraction) + " must be in (0, 1]");
+}
+
+void MembraneTimeStepper::computeTimeStep(Scene* now) {
+    if (!forces) throw std::runtime_error("MembraneTimeStepper: forces is not set");
+    const Real limit = forces->criticalTimeStep();
+    if (std::isfinite(limit)) now->dt = fraction * limit;
+}
+
+} // namespace yade
