@@ -12,6 +12,8 @@ usage: scripts/run.sh COMMAND [options]
   test [-j N] [--full] [MODULE ...]
                             run the tests, or those of some modules; --full adds the long ones
   bench [-j N] [options]    measure the speed; options of scripts/bench.py
+  verify [options]          hold the plugin against closed forms and an independent implementation:
+                            a table, and reference/verification.json; options of scripts/verify.py
   build                     compile the plugin into build/python
   format [--check]          format C++ and Python sources; --check changes nothing and fails where
                             a file is not formatted or a linter complains
@@ -22,9 +24,10 @@ Each command first installs the Debian packages it lacks. To start YADE by hand:
 END
 }
 
-# Debian packages to build and run, and to format.
+# Debian packages to build and run, to verify, and to format.
 run_packages=(yade python3-numpy python3-matplotlib python3-vtk9
     g++ cmake make libboost-dev libeigen3-dev python3-dev libgtest-dev)
+verify_packages=(calculix-ccx python3-scipy)
 format_packages=(clang-format black python3-flake8 shellcheck)
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
@@ -178,6 +181,11 @@ test)
 bench)
     compile
     run_yade "$root/scripts/bench.py" "$@"
+    ;;
+verify)
+    need "${verify_packages[@]}"
+    compile
+    run_yade "$root/scripts/verify.py" "$@"
     ;;
 build) compile ;;
 format) format "$@" ;;
