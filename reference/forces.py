@@ -50,7 +50,7 @@ def node_masses(nodes, triangles, density, thickness):
 
 
 def cable_masses(nodes, cables, density):
-    """Mass (N,) [kg] at the nodes of cables (K, 2) of a density [kg/m]: half of each to its ends."""
+    """Mass (N,) [kg] at the nodes of cables (K, 2) of a density [kg/m]: half at each end."""
     half = 0.5 * density * norm(nodes[cables[:, 1]] - nodes[cables[:, 0]])
     return add_up(len(nodes), cables.ravel(), np.repeat(half, 2))
 

@@ -141,7 +141,7 @@ run_tests() {
 
 # List the sources of a language; build/ and hidden folders are not searched.
 cpp_sources() { find "$root/pkg" "$root/tests" -name '*.[ch]pp'; }
-python_sources() { find "$root/scripts" "$root/tests" -name '*.py'; }
+python_sources() { find "$root/scripts" "$root/tests" "$root/reference" -name '*.py'; }
 
 format() {
     need "${format_packages[@]}"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Runs the verification suite and writes reference/verification.json.
 
-Run it by `scripts/run.sh verify [options]`, or by `yade -n -x scripts/verify.py [options]`. Exits with 1
-if a check does not hold.
+Run it by `scripts/run.sh verify [options]`, or by `yade -n -x scripts/verify.py [options]`. Exits
+with 1 if a check does not hold.
 """
 
 import argparse
@@ -36,48 +36,61 @@ def command_line():
     return parser.parse_args()
 
 
-def kept(path, modules):
-    """Entries of earlier results in the file `path` that belong to `modules`."""
-    if not path.exists():
-        return []
-    return [entry for entry in json.loads(path.read_text())["checks"] if entry["module"] in modules]
-
-
-def run(modules, full):
-    """Run `modules`, print their tables; returns (module, Check) pairs."""
+def run(name, full):
+    """Run one module and print its table; returns its list of Check."""
     from verification import table
 
-    found = []
-    for number, name in enumerate(modules, start=1):
-        print(f"verify: {number} of {len(modules)}, {name} …", file=sys.stderr, flush=True)
-        start = time.monotonic()
-        checks = importlib.import_module(f"verification.{name}").checks(full)
-        if len({check.name for check in checks}) < max(1, len(checks)):
-            raise RuntimeError(f"{name}: no checks, or two of one name")
-        print("\n".join(table(name, checks)), flush=True)
-        print(f"verify: {name} took {time.monotonic() - start:.1f} s", file=sys.stderr, flush=True)
-        found += [(name, check) for check in checks]
+    start = time.monotonic()
+    found = importlib.import_module(f"verification.{name}").checks(full)
+    if not found or len({check.name for check in found}) < len(found):
+        raise RuntimeError("it has no checks, or two of one name")
+    print("\n".join(table(name, found)), flush=True)
+    print(f"verify: {name} took {time.monotonic() - start:.1f} s", file=sys.stderr, flush=True)
     return found
+
+
+def save(name, found):
+    """Put the results of one module into RESULTS, beside those of the others."""
+    from membrane.sail import versions, write_json
+
+    entries, made_with = [], {}
+    if RESULTS.exists():
+        before = json.loads(RESULTS.read_text())
+        others = [module for module in MODULES if module != name]
+        entries = [entry for entry in before["checks"] if entry["module"] in others]
+        made_with = {m: used for m, used in before["made_with"].items() if m in others}
+    made_with[name] = versions()
+    entries += [{**check.as_dict(), "module": name} for check in found]
+    content = {
+        "version": versions()["membrane"],
+        "made_by": "scripts/run.sh verify",
+        "made_with": {m: made_with[m] for m in MODULES if m in made_with},
+        "checks": sorted(entries, key=lambda entry: MODULES.index(entry["module"])),
+    }
+    write_json(RESULTS, content)
 
 
 def main():
     """Run the suite; returns the exit status."""
     arguments = command_line()
     modules = [name for name in MODULES if name in arguments.only]
-    found = run(modules, not arguments.fast)
-    failed = [f"{name}: {check.name}" for name, check in found if not check.holds]
-    if not arguments.fast:
-        from membrane.sail import versions, write_json
-
-        entries = kept(RESULTS, [name for name in MODULES if name not in modules])
-        entries += [{**check.as_dict(), "module": name} for name, check in found]
-        entries.sort(key=lambda entry: MODULES.index(entry["module"]))
-        header = {"version": versions()["membrane"], "made_by": "scripts/run.sh verify"}
-        write_json(RESULTS, {**header, "versions": versions(), "checks": entries})
-        print(f"Wrote {RESULTS}")
+    count, failed = 0, []
+    for number, name in enumerate(modules, start=1):
+        print(f"verify: {number} of {len(modules)}, {name} …", file=sys.stderr, flush=True)
+        try:
+            found = run(name, not arguments.fast)
+        except RuntimeError as error:
+            print(f"verify: {name}: {error}", file=sys.stderr)
+            return 1
+        if not arguments.fast:
+            save(name, found)
+        count += len(found)
+        failed += [f"{name}: {check.name}" for check in found if not check.holds]
     for text in failed:
         print(f"verify: does not hold: {text}", file=sys.stderr)
-    print(f"{len(found) - len(failed)} of {len(found)} checks hold.")
+    print(f"{count - len(failed)} of {count} checks hold.")
+    if not arguments.fast:
+        print(f"Results are in {RESULTS}")
     return 1 if failed else 0
 
 

@@ -241,14 +241,19 @@ def main_run():
     return MainRun()
 
 
-def run_yade(script, *arguments, threads=1, folder=None):
-    """Run `yade -n -x` on a script in `folder`; returns the CompletedProcess, output as text."""
+def yade_environment():
+    """Environment variables with which `yade` finds this package."""
     package = str(Path(membrane.__file__).parents[1])
     path = os.pathsep.join(filter(None, [package, os.environ.get("PYTHONPATH")]))
+    return {**os.environ, "PYTHONPATH": path, "MPLBACKEND": "Agg"}
+
+
+def run_yade(script, *arguments, threads=1, folder=None):
+    """Run `yade -n -x` on a script in `folder`; returns the CompletedProcess, output as text."""
     return subprocess.run(
         ["yade", "-n", "-x", f"-j{threads}", str(script), *map(str, arguments)],
         cwd=folder or scratch(),
-        env={**os.environ, "PYTHONPATH": path, "MPLBACKEND": "Agg"},
+        env=yade_environment(),
         capture_output=True,
         text=True,
         timeout=600,

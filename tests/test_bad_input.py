@@ -209,6 +209,7 @@ class TestParameters(Refusals):
             ("airDensity", math.inf, "finite"),
             ("theta0", 3.2, "[0, pi]"),
             ("theta0", -0.1, "[0, pi]"),
+            ("timeStepCheckPeriod", 0, "> 0"),
         ):
             text = f"{name} = {bad:g}"
             make = membrane.MembraneForceEngine
@@ -315,6 +316,28 @@ class TestRuns(Refusals):
             sheet.states[5].pos = (bad, 0, 0)
             with self.assertRaisesRegex(RuntimeError, "#5"):
                 scene.advance(3)
+
+    def test_material_changed_after_the_membrane_was_made_is_refused(self):
+        for name in ("young", "poisson", "thickness"):
+            O.reset()
+            nodes, triangles = grid(2)
+            sheet = Sheet(nodes, triangles)
+            sheet.run_engines()
+            O.dt = 1e-7
+            setattr(sheet.membrane.material, name, 1.1 * getattr(scene.film(), name))
+            with self.assertRaisesRegex(RuntimeError, f"{name}.* was changed"):
+                O.step()
+
+    def test_mass_that_is_not_positive_is_named(self):
+        nodes, triangles = grid(2)
+        for bad in (0.0, -1.0, math.nan):
+            O.reset()
+            sheet = Sheet(nodes, triangles)
+            sheet.run_engines()
+            O.dt = 1e-7
+            sheet.states[3].mass = bad
+            with self.assertRaisesRegex(RuntimeError, "mass .*body #3 must be finite and > 0"):
+                O.step()
 
     def test_erased_body_is_named(self):
         nodes, triangles = grid(2)

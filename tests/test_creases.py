@@ -293,8 +293,10 @@ class TestForce(HingeTest):
     def test_switching_beta_off_ends_the_forces(self):
         self.make()
         self.assertGreater(np.abs(self.forces(1.0)).max(), 1e-6)
+        self.forces(1.0)
         self.sheet.engine.beta = 0.0
         np.testing.assert_array_equal(self.forces(1.0), 0)
+        self.assertEqual(self.sheet.engine.creasePower, 0)
 
 
 class TestEnergy(HingeTest):

@@ -215,6 +215,20 @@ class TestRuns(TimeStepTest):
         O.dt = 0.999 * limit
         O.step()
 
+    def test_step_is_checked_again_as_the_state_stiffens(self):
+        sheet = self.make(zeta=0.02)
+        sheet.run_engines()
+        sheet.engine.forceTimeStep, sheet.engine.timeStepCheckPeriod = False, 10
+        O.dt = 0.99 * sheet.engine.criticalTimeStep()
+        for _ in range(15):
+            O.step()
+        sheet.place(3 * sheet.rest)
+        self.assertLess(sheet.engine.criticalTimeStep(), O.dt)
+        with self.assertRaisesRegex(RuntimeError, "critical time step"):
+            for _ in range(10):
+                sheet.place(3 * sheet.rest)
+                O.step()
+
     def test_step_raised_during_a_run_is_refused(self):
         sheet = self.make(zeta=0.02)
         sheet.run_engines()

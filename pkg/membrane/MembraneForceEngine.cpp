@@ -82,6 +82,7 @@ void MembraneForceEngine::prepare(Scene& now) {
                                      std::to_string(membrane->bodyIds[i]) + " must be finite and > 0");
     for (::membrane::Points* points : {&x_, &v_, &creaseForces_, &dampingForces_, &dragForces_})
         points->assign(n, Vector3r::Zero());
+    creasePower = dampingPower = dragPower = 0.; // of parts no longer computed
     damping_.clear();
     for (const ::membrane::Side& s : membrane->rest().sides)
         damping_.push_back(

@@ -42,7 +42,7 @@ public:
         ((Real, zeta, 0., Attr::triggerPostLoad, "Damping ratio zeta [-], >= 0; 0: none."))
         ((Real, airDensity, 0., Attr::triggerPostLoad, "Density of the air [kg/m³], >= 0; 0: none."))
         ((bool, forceTimeStep, false, , "Run even if O.dt is above criticalTimeStep()."))
-        ((int, timeStepCheckPeriod, 5000, , "Steps between two checks of O.dt against criticalTimeStep(), which changes with the state; also checked when O.dt changes. > 0."))
+        ((int, timeStepCheckPeriod, 5000, Attr::triggerPostLoad, "Steps between two checks of O.dt against criticalTimeStep(), which changes with the state; also checked when O.dt changes. > 0."))
         ((Real, creasePower, 0., Attr::readonly, "Power of the crease forces in the last step [W], at the velocities half a step before."))
         ((Real, dampingPower, 0., Attr::readonly, "Power of the damping forces in the last step [W], <= 0."))
         ((Real, dragPower, 0., Attr::readonly, "Power of the air drag in the last step [W], <= 0."))

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneTimeStepper.hpp"
-#include <core/Scene.hpp>
 #include <cmath>
+#include <core/Scene.hpp>
 
 namespace yade {
 
@@ -9,7 +9,8 @@ YADE_PLUGIN((MembraneTimeStepper));
 
 void MembraneTimeStepper::postLoad(MembraneTimeStepper&) {
     if (!(fraction > 0. && fraction <= 1.))
-        throw std::invalid_argument("MembraneTimeStepper: fraction = " + std::to_string(fraction) + " must be in (0, 1]");
+        throw std::invalid_argument("MembraneTimeStepper: fraction = " + std::to_string(fraction) +
+                                    " must be in (0, 1]");
 }
 
 void MembraneTimeStepper::computeTimeStep(Scene* now) {

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Verification: numbers of the plugin held against closed forms, other codes and a second implementation.
+"""Verification: the plugin against closed forms, other codes and a second implementation.
 
-Each module has `checks(full)`, which returns a list of Check; without `full` only what takes seconds.
-Run them by scripts/verify.py.
+Each module has `checks(full)`, which returns a list of Check; without `full` only what takes
+seconds. Run them by scripts/verify.py.
 """
 
 import sys

@@ -1,0 +1,484 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The deployment itself: order in time, ledgers, steps and meshes, and an ensemble of runs.
+
+Every run of one set of parameters starts from the same equilibrium, found once. Single runs are
+compared early; late, where tiny differences have grown, the ensemble's mean and spread count.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+from matplotlib.figure import Figure
+from membrane import measures, sail, scene
+from membrane.parameters import SailParameters
+from yade import wrapper as yade
+
+from . import ROOT, Check, at_most, recorded
+
+PICTURE = ROOT / "reference" / "ensemble.png"
+
+# Order in time: errors against a run at REFERENCE_STEP.
+ORDER_STEPS = (2.5e-6, 1.25e-6, 0.625e-6, 0.3125e-6)  # [s]; the fast mode takes the last two
+REFERENCE_STEP = 0.3125e-6 / 8  # [s]
+ORDER_TIME = 5e-4  # [s]
+LATER_TIME, LATER_STEPS, LATER_REFERENCE = 0.01, (5e-6, 2.5e-6, 1.25e-6), 0.3125e-6  # [s]
+
+# Ledgers, steps and meshes.
+SHOCK_TIME = 5e-3  # [s]; the guides' release shakes the sail
+EARLY_TIMES = (0.02, 0.04, 0.06, 0.08, 0.1)  # [s]
+STEPS = (5e-6, 2.5e-6, 1.25e-6)  # [s]
+LEDGER_TIME = 1.0  # [s]
+LEDGER_STEPS = (5e-6, 2.5e-6)  # [s]
+REFINES = (1, 2)  # 3 as well takes some minutes more
+MESH_STEP = 0.4  # share of the critical time step of the folded sail
+
+# Ensemble.
+MEMBERS = 5
+PERTURBATION = 1e-9  # [m], standard deviation of each coordinate at the release
+DURATION = 1.2  # [s]
+INTERVAL = 1e-3  # [s]
+ENSEMBLE_TIMES = (0.05, 0.1, 0.2, 0.5, 1.0)  # [s]
+GROWTHS = ((2e-7, 1e-5), (1e-5, 1e-3))  # [m]: ranges in which growth is taken as exponential
+
+UNDAMPED = {"zeta": 0.0}
+UNBUCKLED = {"alpha": 1e12, "alpha_crease": 1e12}
+
+
+# --- runs ---
+
+
+@dataclass
+class Deployment:
+    """A run after the release.
+
+    Attributes
+    ----------
+    times : (S,) float
+        [s], the first one 0.
+    positions : (S, N, 3) float
+        Of the nodes [m].
+    rate, phase : (S,) float
+        Deployment rate [-] and mean phase difference [rad].
+    balance, spool_work : (S,) float
+        Of the ledger, one step before `times` [J]; 0 if it was off.
+    angular_defect : (S,) float
+        What the ledger's angular momentum changed by beyond the impulse [kg m2/s].
+    angular_momentum : (S,) float
+        [kg m2/s]
+    """
+
+    times: np.ndarray
+    positions: np.ndarray
+    rate: np.ndarray
+    phase: np.ndarray
+    balance: np.ndarray
+    spool_work: np.ndarray
+    angular_defect: np.ndarray
+    angular_momentum: np.ndarray
+
+    def at(self, time):
+        """Row of the time nearest to `time` [s]."""
+        return int(np.argmin(np.abs(self.times - time)))
+
+
+@cache
+def _equilibrium(p):
+    yade.Omega().reset()
+    _, built = sail.build(p)
+    sail.spin_up(built, p)
+    return built.positions()
+
+
+def equilibrium(p):
+    """Positions (N, 3) [m] of the folded sail at rest in the turning frame; computed once."""
+    default = SailParameters()
+    return _equilibrium(replace(p, dt=default.dt, duration=default.duration))
+
+
+def begin(p, positions, ledger=True):
+    """Build the sail of parameters `p`, put its nodes at `positions` (N, 3) [m], release it.
+
+    Returns
+    -------
+    mesh : SailMesh
+    sail : MembraneScene
+    """
+    omega = yade.Omega()
+    omega.reset()
+    mesh, built = sail.build(p)
+    for i, place in zip(built.membrane.bodyIds, positions.tolist()):
+        omega.bodies[i].state.pos = place
+    omega.dt = p.dt
+    scene.release(built, p.omega, mesh.guide_nodes.ravel())
+    built.ledger.dead = not ledger
+    return mesh, built
+
+
+def velocities(built):
+    """Velocities (N, 3) [m/s] of the nodes, half a step before the positions."""
+    bodies = yade.Omega().bodies
+    return np.array([bodies[i].state.vel for i in built.membrane.bodyIds])
+
+
+def begin_centred(p, positions):
+    """`begin` with velocities that belong to half a step before the release.
+
+    The release sets the velocities of the steady spin; but the nodes that the guides held have
+    another acceleration once they are free. Here v(-dt/2) = omega x r - a dt/2 with their own a.
+    """
+    mesh, built = begin(p, positions, ledger=False)
+    before = velocities(built)
+    scene.advance(1)
+    gained = velocities(built) - before
+    mesh, built = begin(p, positions, ledger=False)
+    x, y, z = positions.T
+    spin = p.omega * np.column_stack([-y, x, 0 * z])
+    bodies = yade.Omega().bodies
+    for node in np.setdiff1d(np.arange(len(positions)), mesh.anchors):
+        state = bodies[built.membrane.bodyIds[node]].state
+        state.vel = (spin[node] - 0.5 * gained[node]).tolist()
+    return mesh, built
+
+
+def deploy(p, interval, *, positions=None, ledger=False, centred=False):
+    """Release the sail and run it for p.duration.
+
+    Parameters
+    ----------
+    p : SailParameters
+    interval : float
+        Between rows [s], a multiple of p.dt.
+    positions : (N, 3) float, optional
+        Where to start [m]; default: the equilibrium.
+    ledger : bool
+        Keep the ledger.
+    centred : bool
+        See `begin_centred`.
+
+    Returns
+    -------
+    Deployment
+    """
+    stride, rows = round(interval / p.dt), round(p.duration / interval)
+    if rows < 1 or abs(stride * p.dt / interval - 1) > 1e-9:
+        raise ValueError(f"interval = {interval} s must be a multiple of dt = {p.dt} s")
+    start = equilibrium(p) if positions is None else positions
+    mesh, built = begin_centred(p, start) if centred else begin(p, start, ledger)
+    frames, book = [built.positions()], [(0.0, 0.0, 0.0, 0.0)]
+    for _ in range(rows):
+        scene.advance(stride)
+        frames.append(built.positions())
+        kept = built.ledger
+        defect = kept.angularMomentum - kept.initialAngularMomentum - kept.angularImpulse
+        book.append((kept.balance, kept.drivenWork, defect, kept.angularMomentum))
+    times = interval * np.arange(rows + 1)
+    azimuths = np.array([measures.tip_azimuths(mesh, x) for x in frames])
+    return Deployment(
+        times,
+        np.array(frames),
+        np.array([measures.deployment_rate(mesh, x) for x in frames]),
+        measures.phase_difference(azimuths, p.omega * times).mean(axis=1),
+        *np.array(book).T,
+    )
+
+
+def perturbed(positions, seed):
+    """`positions` (N, 3) [m], each coordinate off by about PERTURBATION."""
+    noise = np.random.default_rng(seed).standard_normal(positions.shape)
+    return positions + PERTURBATION * noise
+
+
+@cache
+def ensemble():
+    """MEMBERS runs of the default parameters; all but the first start perturbed.
+
+    The first keeps the ledger.
+    """
+    p = SailParameters(duration=DURATION)
+    start = equilibrium(p)
+    first = deploy(p, INTERVAL, positions=start, ledger=True)
+    rest = [deploy(p, INTERVAL, positions=perturbed(start, s)) for s in range(1, MEMBERS)]
+    return [first, *rest]
+
+
+def rms(difference):
+    """Root mean square over all nodes of differences (..., N, 3) [m] of positions."""
+    return np.sqrt(np.mean(np.sum(difference**2, axis=-1), axis=-1))
+
+
+# --- order in time ---
+
+
+def step_errors(steps, reference, duration, centred, **changes):
+    """Errors (len(steps),) [m] of positions at `duration` [s] against a run at step `reference`.
+
+    `changes` go to SailParameters; the equilibrium is that of the defaults.
+    """
+    start = equilibrium(SailParameters())
+    p = SailParameters(duration=duration, **changes)
+    runs = [
+        deploy(replace(p, dt=dt), duration, positions=start, centred=centred)
+        for dt in (*steps, reference)
+    ]
+    return np.array([rms(r.positions[-1] - runs[-1].positions[-1]) for r in runs[:-1]])
+
+
+def order_checks(full):
+    """Order of the time integration, and what takes it from 2 to 1."""
+    smooth = {**UNDAMPED, **UNBUCKLED}
+    exact = "leapfrog, central differences"
+    lag = "damping takes velocities half a step old: an error of first order"
+    shift = "the guides' nodes are let go half a step early: an error of first order"
+    # name, parameters, centred, order, tolerance, recorded only, source
+    cases = [
+        ("smooth: no damping, no buckling", smooth, True, 2, 0.1, False, exact),
+        ("sides buckle, no damping", UNDAMPED, True, 2, 0.25, False, exact),
+        ("no damping, no buckling, released as in the scene", smooth, False, 1.3, 0.1, True, shift),
+        ("damping, no buckling", UNBUCKLED, True, 1.2, 0.1, True, lag),
+        ("all, released as in the scene", {}, False, 1.13, 0.1, True, f"{lag}; {shift}"),
+    ]
+    steps = ORDER_STEPS if full else ORDER_STEPS[-2:]
+    found = []
+    for name, changes, centred, target, tolerance, records, source in cases if full else cases[:1]:
+        errors = step_errors(steps, REFERENCE_STEP, ORDER_TIME, centred, **changes)
+        measured = float(np.log2(errors[-2] / errors[-1]))
+        kind = recorded if records else Check
+        title = f"order in time, {1e3 * ORDER_TIME:g} ms, {name}"
+        found.append(kind(title, measured, target, tolerance, source))
+    if full:
+        errors = step_errors(LATER_STEPS, LATER_REFERENCE, LATER_TIME, False)
+        title = f"{1e3 * LATER_TIME:g} ms, all"
+        late = "fast vibration of buckled sides after the release is out of phase; no order shows"
+        measured = float(np.log2(errors[-2] / errors[-1]))
+        found += [
+            recorded(f"order in time, {title}", measured, 0.38, 0.3, late),
+            recorded(
+                f"error of positions at dt = 5e-6 s, {title}", errors[0], 2.2e-5, 1e-5, "", "m"
+            ),
+        ]
+    return found
+
+
+# --- ledgers ---
+
+
+def energy_errors(p):
+    """Where the energy of the sides goes astray, run from the release for p.duration.
+
+    The leapfrog's work is the mean of a side's forces at both ends of a step times its motion;
+    its energy changes by the integral of the force between. They differ where the tension is no
+    straight line over the step (a side buckles or becomes taut: a kink) and where the side turns.
+
+    Returns
+    -------
+    kinks, turns, balance : float
+        Sums over steps and sides, and the ledger's balance [J].
+    """
+    _, built = begin(p, equilibrium(SailParameters()))
+    net = built.membrane
+    a, b = np.array(net.sides).T
+    stiffness, rest = np.array(net.stiffnesses), np.array(net.restLengths)
+    critical = np.array(net.criticalLengths)
+
+    def look():
+        x = np.array(built.forces.lastPositions())
+        span = x[b] - x[a]
+        length = np.linalg.norm(span, axis=1)
+        stretch = np.maximum(length, critical) - rest
+        energy = stiffness * stretch * (0.5 * stretch + np.minimum(0, length - critical))
+        return span, length, stiffness * stretch, energy
+
+    kinks = turns = 0.0
+    scene.advance(1)
+    old = look()
+    for _ in range(round(p.duration / p.dt) - 1):
+        scene.advance(1)
+        new = look()
+        growth = new[3] - old[3]
+        straight = 0.5 * (old[2] + new[2]) * (new[1] - old[1])
+        force = 0.5 * ((old[2] / old[1])[:, None] * old[0] + (new[2] / new[1])[:, None] * new[0])
+        work = np.sum(force * (new[0] - old[0]), axis=1)
+        kinks += np.sum(growth - straight)
+        turns += np.sum(straight - work)
+        old = new
+    return float(kinks), float(turns), built.ledger.balance
+
+
+def ledger_checks():
+    """Energy and angular momentum of the whole run, and what breaks the energy's balance."""
+    first, share = ensemble()[0], {}
+    p = SailParameters(duration=LEDGER_TIME)
+    runs = {LEDGER_STEPS[0]: first}
+    for dt in LEDGER_STEPS[1:]:
+        runs[dt] = deploy(replace(p, dt=dt), INTERVAL, ledger=True)
+    kink = "at most 1e-6 is wanted, but sides cross their kinks in less than a step"
+    found = []
+    last = {5e-6: 1.7e-4, 2.5e-6: 5e-5}
+    for dt, run in runs.items():
+        rows = run.times <= LEDGER_TIME + 1e-9
+        share[dt] = np.abs(run.balance[rows]).max() / np.abs(run.spool_work[rows]).max()
+        title = f"{LEDGER_TIME:g} s at dt = {dt:g} s: "
+        found.append(
+            recorded(
+                title + "energy balance over spool work", share[dt], last[dt], 0.5 * last[dt], kink
+            )
+        )
+        angular = np.abs(run.angular_defect[rows]).max() / np.abs(run.angular_momentum[rows]).max()
+        found.append(at_most(title + "angular momentum defect", angular, 1e-12, "Newton, leapfrog"))
+    halved = float(np.log2(share[LEDGER_STEPS[0]] / share[LEDGER_STEPS[1]]))
+    found.append(
+        recorded("order of the energy balance, first halving", halved, 1.7, 0.5, "1 kink in a step")
+    )
+
+    p = SailParameters(duration=SHOCK_TIME)
+    kinks, turns, balance = energy_errors(p)
+    straight = energy_errors(replace(p, **UNBUCKLED))[2]
+    title = f"first {1e3 * SHOCK_TIME:g} ms: "
+    found += [
+        Check(
+            title + "errors at kinks and of turning over the balance",
+            (kinks + turns) / balance,
+            1,
+            1e-3,
+            "all else in the ledger is exact",
+        ),
+        recorded(title + "share of the kinks", kinks / balance, 0.9998, 1e-2, ""),
+        recorded(title + "energy balance", balance, -7.27e-7, 2e-7, kink, "J"),
+        recorded(title + "the same if no side buckles", straight, 1.8e-8, 2e-8, "", "J"),
+    ]
+    return found
+
+
+# --- steps and meshes ---
+
+
+@cache
+def early(refine, dt):
+    """The run up to the last of EARLY_TIMES; `dt` None: MESH_STEP of the critical one."""
+    p = SailParameters(refine=refine, duration=EARLY_TIMES[-1])
+    if dt is None:
+        _, built = begin(p, equilibrium(p))
+        limit = MESH_STEP * built.forces.criticalTimeStep()
+        dt = EARLY_TIMES[0] / np.ceil(EARLY_TIMES[0] / limit)
+    return deploy(replace(p, dt=dt), EARLY_TIMES[0], ledger=True)
+
+
+def convergence_checks():
+    """Rate and phase difference at early times, and how they change with step and mesh."""
+    base = early(1, STEPS[0])
+    others = {f"dt = {dt:g} s": early(1, dt) for dt in STEPS[1:]}
+    others |= {f"refine {n}": early(n, None) for n in REFINES[1:]}
+    found = []
+    for row, time in enumerate(EARLY_TIMES, start=1):
+        for kind, unit, tolerance in (("rate", "-", 0.02), ("phase", "deg", 1.0)):
+
+            def value(run):
+                number = getattr(run, kind)[row]
+                return float(np.degrees(number) if kind == "phase" else number)
+
+            title = f"{kind} at {time:g} s"
+            found.append(
+                recorded(title, value(base), CONVERGENCE[title], tolerance, "refine 1", unit)
+            )
+            for name, run in others.items():
+                change, entry = value(run) - value(base), f"{title}: change at {name}"
+                found.append(recorded(entry, change, CONVERGENCE[entry], tolerance, "", unit))
+    return found
+
+
+# Last values of convergence_checks.
+CONVERGENCE = {}
+
+
+# --- ensemble ---
+
+
+def growth_times(times, distances, within):
+    """Times [s] in which distances (M, S) [m] between runs grow by e while they are `within`.
+
+    Straight lines through the logarithms, from a distance's last row below the lower of the two
+    limits [m] to its first one beyond the upper.
+    """
+    found = []
+    for distance in distances:
+        beyond = int(np.argmax(distance > within[1]))
+        first = int(np.flatnonzero(distance[:beyond] < within[0])[-1])
+        rows = slice(first, beyond + 1)
+        found.append(1 / np.polyfit(times[rows], np.log(distance[rows]), 1)[0])
+    return np.array(found)
+
+
+def draw(runs, distances, path):
+    """Rates, phases and distances (M, S) [m] of the ensemble `runs` over time, to `path`."""
+    figure = Figure(figsize=(7, 8), layout="constrained")
+    rate, phase, growth = figure.subplots(3, 1)
+    times = runs[0].times
+    columns = (rate, [r.rate for r in runs]), (phase, np.degrees([r.phase for r in runs]))
+    for axes, values in columns:
+        mean, spread = np.mean(values, axis=0), np.std(values, axis=0, ddof=1)
+        axes.plot(times, np.transpose(values), color="C1", linewidth=0.5, alpha=0.7)
+        axes.plot(times, mean, color="C0", label="mean")
+        axes.fill_between(times, mean - 2 * spread, mean + 2 * spread, alpha=0.3, label="2 spreads")
+        axes.set(xlabel="time [s]")
+    rate.set(ylabel="deployment rate [-]")
+    rate.legend(frameon=False)
+    phase.set(ylabel="mean phase difference [deg]")
+    growth.loglog(times[1:], distances[:, 1:].T, color="C0", linewidth=0.8)
+    for limit in np.unique(GROWTHS):
+        growth.axhline(limit, color="0.5", linewidth=0.5, linestyle=":")
+    growth.set(xlabel="time [s]", ylabel="distance from the first run [m]")
+    for axes in (rate, phase, growth):
+        axes.grid(alpha=0.3)
+        axes.margins(x=0)
+    figure.savefig(path, dpi=100)
+
+
+def ensemble_checks():
+    """Growth of tiny differences, and mean and spread over the ensemble, early and late."""
+    runs = ensemble()
+    times = runs[0].times
+    distances = np.array([rms(r.positions - runs[0].positions) for r in runs[1:]])
+    draw(runs, distances, PICTURE)
+    found = []
+    chaos = "no single exponent: small folds diverge first and fast, then saturate"
+    for within in GROWTHS:
+        name = f"Lyapunov time, distances {within[0]:g} m to {within[1]:g} m"
+        measured = float(growth_times(times, distances, within).mean())
+        last = ENSEMBLE[name]
+        found.append(recorded(name, measured, last, 0.3 * last, chaos, "s"))
+    phases = np.degrees([r.phase for r in runs])
+    quantities = ("rate", np.array([r.rate for r in runs]), "-"), ("phase", phases, "deg")
+    for time in ENSEMBLE_TIMES:
+        for kind, values, unit in quantities:
+            here = values[:, runs[0].at(time)]
+            mean, spread = float(here.mean()), float(here.std(ddof=1))
+            title = f"{kind} at {time:g} s: "
+            room = ENSEMBLE[title + "spread"]
+            source = f"{MEMBERS} runs, {PERTURBATION:g} m apart at the release"
+            found += [
+                recorded(title + "mean", mean, ENSEMBLE[title + "mean"], 3 * room, source, unit),
+                recorded(title + "spread", spread, room, 2 * room, source, unit),
+            ]
+    return found
+
+
+# Last values of ensemble_checks.
+ENSEMBLE = {}
+
+
+def checks(full):
+    """Checks of the deployment: order in time; `full`, also ledgers, meshes and the ensemble.
+
+    Parameters
+    ----------
+    full : bool
+
+    Returns
+    -------
+    list of Check
+    """
+    found = order_checks(full)
+    if full:
+        found += ledger_checks() + convergence_checks() + ensemble_checks()
+    return found

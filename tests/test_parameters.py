@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Parameters of the scene: tables of the paper, command line, batch tables."""
+
+import argparse
+import json
+import subprocess
+import unittest
+from dataclasses import fields
+from math import pi
+
+from membrane.parameters import SailParameters, add_arguments, describe, from_arguments
+from support import ROOT, long, scratch, yade_environment
+
+# Tables 1 and 2 of the paper, and the defaults that MODEL chose among Table 2's.
+PAPER = {
+    "outer_width": 0.455,
+    "inner_width": 0.103,
+    "fold_lines": 7,
+    "thickness": 7.5e-6,
+    "young": 3.2e9,
+    "poisson": 0.34,
+    "density": 1420.0,
+    "spool_radius": 0.025,
+    "tip_mass": 0.36e-3,
+    "omega": 6 * pi,
+    "theta0": 0.0,
+    "alpha": 100.0,
+    "gamma": 100.0,
+    "zeta": 0.02,
+}
+
+
+class TestParameters(unittest.TestCase):
+    def parse(self, *words):
+        parser = argparse.ArgumentParser()
+        add_arguments(parser)
+        return parser.parse_args(words)
+
+    def test_defaults_are_those_of_the_paper(self):
+        values = SailParameters().as_dict()
+        self.assertLessEqual(PAPER.items(), values.items())
+        self.assertIn(values["alpha_crease"], (100.0, 1000.0))
+        self.assertIn(values["beta"], (0.0, 3.0, 30.0))
+
+    def test_no_options_give_the_defaults(self):
+        self.assertEqual(from_arguments(self.parse()), SailParameters())
+
+    def test_every_parameter_can_be_set_on_the_command_line(self):
+        for item in fields(SailParameters):
+            flag = "--" + item.name.replace("_", "-")
+            if item.type is bool:
+                words, expected = [flag], not item.default
+            elif item.metadata["choices"]:
+                words, expected = [flag, "conservative"], "conservative"
+            elif item.type is int:
+                words, expected = [flag, str(item.default + 1)], item.default + 1
+            else:
+                expected = 0.9 * item.default if item.default else 0.01
+                words = [flag, repr(expected)]
+            found = from_arguments(self.parse(*words)).as_dict()
+            self.assertEqual(found, {**SailParameters().as_dict(), item.name: expected})
+
+    def test_table_overrides_the_command_line(self):
+        found = from_arguments(self.parse("--beta", "3"), {"beta": 0.0, "zeta": 0.1})
+        self.assertEqual((found.beta, found.zeta), (0.0, 0.1))
+
+    def test_unknown_name_in_a_table_is_refused(self):
+        with self.assertRaisesRegex(ValueError, "betta is no parameter of the sail; known are"):
+            from_arguments(self.parse(), {"betta": 3.0})
+
+    def test_every_description_has_source_range_and_default(self):
+        for item in fields(SailParameters):
+            text = describe(item)
+            self.assertIn(item.metadata["source"], text)
+            self.assertIn(f"default {item.default}", text)
+            if item.type is float and item.metadata["unit"] != "-":
+                self.assertIn(f"[{item.metadata['unit']}]", text)
+
+
+class TestBatch(unittest.TestCase):
+    @long
+    def test_each_row_of_a_batch_table_leaves_its_results(self):
+        folder = scratch() / "batch"
+        folder.mkdir()
+        short = "0.002 0.001 0.1"
+        (folder / "table.txt").write_text(
+            "description duration shapes_interval spin_up_tolerance beta\n"
+            f"soft {short} 3\nstiff {short} 30\n"
+        )
+        done = subprocess.run(
+            ["yade-batch", "-j1", "--job-threads=1", "table.txt", ROOT / "scripts" / "deploy.py"],
+            cwd=folder,
+            env=yade_environment(),
+            capture_output=True,
+            text=True,
+            timeout=300,
+        )
+        self.assertNotIn("FAILED", done.stdout + done.stderr)
+        for row, beta in (("soft", 3.0), ("stiff", 30.0)):
+            summary = json.loads((folder / "out" / row / "summary.json").read_text())
+            self.assertEqual(summary["parameters"]["beta"], beta)
+            self.assertEqual(summary["parameters"]["duration"], 0.002)
+
+
+if __name__ == "__main__":
+    unittest.main()
