@@ -14,6 +14,8 @@ usage: scripts/run.sh COMMAND [options]
   bench [-j N] [options]    measure the speed; options of scripts/bench.py
   verify [options]          hold the plugin against closed forms and an independent implementation:
                             a table, and reference/verification.json; options of scripts/verify.py
+  stability [options]       scan where each part of the method fails, into reference/stability
+  parts [options]           what each part of the model changes and costs, into reference/parts.csv
   build                     compile the plugin into build/python
   format [--check]          format C++ and Python sources; --check changes nothing and fails where
                             a file is not formatted or a linter complains
@@ -186,6 +188,10 @@ verify)
     need "${verify_packages[@]}"
     compile
     run_yade "$root/scripts/verify.py" "$@"
+    ;;
+stability | parts)
+    compile
+    run_yade "$root/scripts/$command.py" "$@"
     ;;
 build) compile ;;
 format) format "$@" ;;

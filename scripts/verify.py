@@ -15,7 +15,7 @@ from pathlib import Path
 SCRIPTS = Path(sys.argv[0]).resolve().parent  # YADE keeps __file__ for itself
 sys.path.append(str(SCRIPTS))
 
-MODULES = ["forces", "sheets", "spinning"]
+MODULES = ["forces", "sheets", "spinning", "deployment", "paper"]
 RESULTS = SCRIPTS.parent / "reference" / "verification.json"
 
 

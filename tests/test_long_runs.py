@@ -33,8 +33,8 @@ class TestLongRuns(unittest.TestCase):
     def test_finer_sail_opens_in_the_same_way_at_first(self):
         coarse = main_run().history
         _, fine = deploy("finer", refine=2, dt=2.5e-6, duration=0.06)
-        work = np.abs(fine["spool_work"]).max()
-        self.assertLess(np.abs(fine["energy_balance"]).max(), 0.01 * work)
+        # The spool has hardly worked yet; what turns into one another is the kinetic energy.
+        self.assertLess(np.abs(fine["energy_balance"]).max(), 1e-3 * fine["kinetic_energy"].max())
         tips = coarse["mean_tip_radius"][:61]
         self.assertGreater(np.ptp(tips), 0.02)
         np.testing.assert_allclose(fine["mean_tip_radius"], tips, atol=0.1 * np.ptp(tips))

@@ -30,6 +30,7 @@ EARLY_TIMES = (0.02, 0.04, 0.06, 0.08, 0.1)  # [s]
 STEPS = (5e-6, 2.5e-6, 1.25e-6)  # [s]
 LEDGER_TIME = 1.0  # [s]
 LEDGER_STEPS = (5e-6, 2.5e-6)  # [s]
+LAST_IMBALANCE = (1.02e-4, 2.66e-5)
 REFINES = (1, 2)  # 3 as well takes some minutes more
 MESH_STEP = 0.4  # share of the critical time step of the folded sail
 
@@ -38,7 +39,7 @@ MEMBERS = 5
 PERTURBATION = 1e-9  # [m], standard deviation of each coordinate at the release
 DURATION = 1.2  # [s]
 INTERVAL = 1e-3  # [s]
-ENSEMBLE_TIMES = (0.05, 0.1, 0.2, 0.5, 1.0)  # [s]
+POWER_UNTIL = 0.1  # [s]
 GROWTHS = ((2e-7, 1e-5), (1e-5, 1e-3))  # [m]: ranges in which growth is taken as exponential
 
 UNDAMPED = {"zeta": 0.0}
@@ -307,47 +308,38 @@ def energy_errors(p):
 
 def ledger_checks():
     """Energy and angular momentum of the whole run, and what breaks the energy's balance."""
-    first, share = ensemble()[0], {}
     p = SailParameters(duration=LEDGER_TIME)
-    runs = {LEDGER_STEPS[0]: first}
+    runs = {LEDGER_STEPS[0]: ensemble()[0]}
     for dt in LEDGER_STEPS[1:]:
         runs[dt] = deploy(replace(p, dt=dt), INTERVAL, ledger=True)
-    kink = "at most 1e-6 is wanted, but sides cross their kinks in less than a step"
+    kink = "1e-6 is wanted, but sides run through their kinks in less than a step"
     found = []
-    last = {5e-6: 1.7e-4, 2.5e-6: 5e-5}
-    for dt, run in runs.items():
+    for (dt, run), last in zip(runs.items(), LAST_IMBALANCE):
         rows = run.times <= LEDGER_TIME + 1e-9
-        share[dt] = np.abs(run.balance[rows]).max() / np.abs(run.spool_work[rows]).max()
+        imbalance = np.abs(run.balance[rows]).max() / np.abs(run.spool_work[rows]).max()
         title = f"{LEDGER_TIME:g} s at dt = {dt:g} s: "
-        found.append(
-            recorded(
-                title + "energy balance over spool work", share[dt], last[dt], 0.5 * last[dt], kink
-            )
-        )
+        name = title + "energy imbalance over spool work"
+        found.append(recorded(name, float(imbalance), last, 0.5 * last, kink))
         angular = np.abs(run.angular_defect[rows]).max() / np.abs(run.angular_momentum[rows]).max()
-        found.append(at_most(title + "angular momentum defect", angular, 1e-12, "Newton, leapfrog"))
-    halved = float(np.log2(share[LEDGER_STEPS[0]] / share[LEDGER_STEPS[1]]))
-    found.append(
-        recorded("order of the energy balance, first halving", halved, 1.7, 0.5, "1 kink in a step")
-    )
+        name = title + "angular momentum beyond the impulse"
+        found.append(at_most(name, float(angular), 1e-12, "leapfrog under its own torque"))
+    missing = [abs(early(1, dt).balance[-1]) for dt in STEPS]
+    for dt, coarse, fine in zip(STEPS, missing, missing[1:]):
+        name = f"order of the energy imbalance at {EARLY_TIMES[-1]:g} s, dt = {dt:g} s halved"
+        found.append(Check(name, float(np.log2(coarse / fine)), 2, 0.4, "kinks: second order"))
 
     p = SailParameters(duration=SHOCK_TIME)
     kinks, turns, balance = energy_errors(p)
     straight = energy_errors(replace(p, **UNBUCKLED))[2]
     title = f"first {1e3 * SHOCK_TIME:g} ms: "
-    found += [
-        Check(
-            title + "errors at kinks and of turning over the balance",
-            (kinks + turns) / balance,
-            1,
-            1e-3,
-            "all else in the ledger is exact",
-        ),
-        recorded(title + "share of the kinks", kinks / balance, 0.9998, 1e-2, ""),
-        recorded(title + "energy balance", balance, -7.27e-7, 2e-7, kink, "J"),
-        recorded(title + "the same if no side buckles", straight, 1.8e-8, 2e-8, "", "J"),
+    rest = "all else in the ledger is exact"
+    name = title + "errors at kinks and of turning over the imbalance"
+    return found + [
+        Check(name, (kinks + turns) / balance, 1, 1e-3, rest),
+        recorded(title + "share of the kinks", kinks / balance, 0.9998, 1e-2, "the rest: turning"),
+        recorded(title + "energy imbalance", balance, -7.27e-7, 2e-7, kink, "J"),
+        recorded(title + "the same if no side buckles", straight, 1.8e-8, 2e-8, "no kinks", "J"),
     ]
-    return found
 
 
 # --- steps and meshes ---
@@ -364,31 +356,48 @@ def early(refine, dt):
     return deploy(replace(p, dt=dt), EARLY_TIMES[0], ledger=True)
 
 
+# Last values at EARLY_TIMES: rate [-] and phase difference [deg].
+LAST_EARLY = {
+    "dt = 5e-06 s": (
+        (0.094949, 0.210609, 0.463916, 0.714296, 0.766701),
+        (-0.5548, -3.4737, -9.3431, -18.7025, -29.2978),
+    ),
+    "dt = 2.5e-06 s": (
+        (0.094943, 0.210076, 0.464394, 0.71582, 0.772457),
+        (-0.5551, -3.4739, -9.3441, -18.7109, -29.3333),
+    ),
+    "dt = 1.25e-06 s": (
+        (0.09497, 0.210261, 0.464044, 0.717322, 0.763955),
+        (-0.5549, -3.4747, -9.3422, -18.7029, -29.3016),
+    ),
+    "refine = 2": (
+        (0.087225, 0.200298, 0.438945, 0.607123, 0.63962),
+        (-0.5543, -3.4416, -9.1745, -17.8963, -27.5086),
+    ),
+}
+
+
 def convergence_checks():
     """Rate and phase difference at early times, and how they change with step and mesh."""
-    base = early(1, STEPS[0])
-    others = {f"dt = {dt:g} s": early(1, dt) for dt in STEPS[1:]}
-    others |= {f"refine {n}": early(n, None) for n in REFINES[1:]}
+    runs = {f"dt = {dt:g} s": early(1, dt) for dt in STEPS}
+    runs |= {f"refine = {n}": early(n, None) for n in REFINES[1:]}
+    base = next(iter(runs))
     found = []
-    for row, time in enumerate(EARLY_TIMES, start=1):
-        for kind, unit, tolerance in (("rate", "-", 0.02), ("phase", "deg", 1.0)):
-
-            def value(run):
-                number = getattr(run, kind)[row]
-                return float(np.degrees(number) if kind == "phase" else number)
-
-            title = f"{kind} at {time:g} s"
-            found.append(
-                recorded(title, value(base), CONVERGENCE[title], tolerance, "refine 1", unit)
-            )
-            for name, run in others.items():
-                change, entry = value(run) - value(base), f"{title}: change at {name}"
-                found.append(recorded(entry, change, CONVERGENCE[entry], tolerance, "", unit))
+    for name, run in runs.items():
+        change = "" if name == base else "change of "
+        against = "one run" if name == base else f"against {base}, refine = 1"
+        values = run.rate[1:], np.degrees(run.phase[1:])
+        standard = runs[base].rate[1:], np.degrees(runs[base].phase[1:])
+        for kind, unit, room, column in (("rate", "-", 0.02, 0), ("phase", "deg", 0.3, 1)):
+            last = np.array(LAST_EARLY[name][column])
+            measured = values[column]
+            if change:
+                last = last - LAST_EARLY[base][column]
+                measured = measured - standard[column]
+            for time, now, before in zip(EARLY_TIMES, measured.tolist(), last.tolist()):
+                title = f"{name}: {change}{kind} at {time:g} s"
+                found.append(recorded(title, now, before, room, against, unit))
     return found
-
-
-# Last values of convergence_checks.
-CONVERGENCE = {}
 
 
 # --- ensemble ---
@@ -434,6 +443,19 @@ def draw(runs, distances, path):
     figure.savefig(path, dpi=100)
 
 
+# Last values: Lyapunov times [s] within GROWTHS, the power of time with which distances grow,
+# mean and spread of rate and phase difference [deg].
+LAST_GROWTH = (2.17e-3, 14.6e-3)
+LAST_POWER = 2.5
+LAST_MEANS = {
+    0.05: ((0.3210, 0.0004), (-5.999, 0.0012)),
+    0.1: ((0.7673, 0.0030), (-29.29, 0.0113)),
+    0.2: ((0.3906, 0.0068), (-61.71, 0.234)),
+    0.5: ((0.6421, 0.0228), (-72.35, 0.568)),
+    1.0: ((0.6949, 0.0080), (67.68, 0.259)),
+}
+
+
 def ensemble_checks():
     """Growth of tiny differences, and mean and spread over the ensemble, early and late."""
     runs = ensemble()
@@ -442,29 +464,27 @@ def ensemble_checks():
     draw(runs, distances, PICTURE)
     found = []
     chaos = "no single exponent: small folds diverge first and fast, then saturate"
-    for within in GROWTHS:
+    for within, last in zip(GROWTHS, LAST_GROWTH):
         name = f"Lyapunov time, distances {within[0]:g} m to {within[1]:g} m"
         measured = float(growth_times(times, distances, within).mean())
-        last = ENSEMBLE[name]
         found.append(recorded(name, measured, last, 0.3 * last, chaos, "s"))
-    phases = np.degrees([r.phase for r in runs])
-    quantities = ("rate", np.array([r.rate for r in runs]), "-"), ("phase", phases, "deg")
-    for time in ENSEMBLE_TIMES:
-        for kind, values, unit in quantities:
-            here = values[:, runs[0].at(time)]
-            mean, spread = float(here.mean()), float(here.std(ddof=1))
-            title = f"{kind} at {time:g} s: "
-            room = ENSEMBLE[title + "spread"]
-            source = f"{MEMBERS} runs, {PERTURBATION:g} m apart at the release"
-            found += [
-                recorded(title + "mean", mean, ENSEMBLE[title + "mean"], 3 * room, source, unit),
-                recorded(title + "spread", spread, room, 2 * room, source, unit),
-            ]
+    grows = slice(1, runs[0].at(POWER_UNTIL) + 1)
+    mean = np.exp(np.log(distances[:, grows]).mean(axis=0))
+    power = float(np.polyfit(np.log(times[grows]), np.log(mean), 1)[0])
+    name = f"distances grow with this power of time until {POWER_UNTIL:g} s"
+    found.append(recorded(name, power, LAST_POWER, 0.3, "a straight line, both logarithmic"))
+    rates, phases = np.array([r.rate for r in runs]), np.degrees([r.phase for r in runs])
+    source = f"{MEMBERS} runs, {PERTURBATION:g} m apart at the release"
+    for time, last in LAST_MEANS.items():
+        row = runs[0].at(time)
+        values = ("rate", "-", rates[:, row], last[0]), ("phase", "deg", phases[:, row], last[1])
+        for kind, unit, here, (mean, spread) in values:
+            off = here.std(ddof=1)
+            rows = ("mean", here.mean(), mean, 3 * spread), ("spread", off, spread, 2 * spread)
+            for name, now, before, room in rows:
+                title = f"{kind} at {time:g} s: {name}"
+                found.append(recorded(title, float(now), before, room, source, unit))
     return found
-
-
-# Last values of ensemble_checks.
-ENSEMBLE = {}
 
 
 def checks(full):

@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Leaves out each part of the model in turn: what it changes in the answer, and what time it costs.
+
+Run it by `scripts/run.sh parts [options]`, or by `yade -n -x scripts/parts.py [options]`. Writes
+reference/parts.csv and prints advice.
+"""
+
+import argparse
+import statistics
+import sys
+import time
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+from membrane import measures, scene
+from membrane.parameters import SailParameters
+from yade import wrapper as yade
+
+SCRIPTS = Path(sys.argv[0]).resolve().parent  # YADE keeps __file__ for itself
+sys.path.append(str(SCRIPTS))
+
+from verification import deployment  # noqa: E402  (found only now)
+
+TABLE = SCRIPTS.parent / "reference" / "parts.csv"
+SAMPLES = (0.05, 0.1)  # [s]; single curves can be compared until then
+LAG_TIME = 0.45  # [s]; the largest lag comes before
+INTERVAL = 1e-3  # [s]
+
+HEADER = """\
+# What each part of the model changes in the paper's case (its default parameters), and its cost.
+# Made by `scripts/run.sh parts`. Changes are those of the answer against that of the
+# complete model; the row "spread" has for scale the standard deviation over runs that
+# start 1e-9 m apart, the row "complete" the answer itself.
+# part: what was left out or changed; dt_s: time step [s]
+# rate_50ms, rate_100ms: deployment rate [-] at 0.05 s and 0.1 s
+# phase_50ms_deg, phase_100ms_deg: mean phase difference [deg] at 0.05 s and 0.1 s
+# lag_deg: largest lag [deg]; empty where the run was not that long
+# us_per_step: processor time of a step [us], median of short runs
+# time_ratio: processor time for the same simulated time over that of the complete model, median
+#   of pairs; that of "complete" shows how far off such medians are
+"""
+COLUMNS = (
+    "part,dt_s,rate_50ms,rate_100ms,phase_50ms_deg,phase_100ms_deg,lag_deg,us_per_step,time_ratio"
+)
+
+
+def drop_collider():
+    """Take the collider out of the engines: nothing touches the spool any more."""
+    omega = yade.Omega()
+    collider = yade.InsertionSortCollider
+    omega.engines = [engine for engine in omega.engines if not isinstance(engine, collider)]
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part that is left out.
+
+    Attributes
+    ----------
+    changes : dict
+        Of SailParameters.
+    rests : bool
+        Whether the sail rests elsewhere without it, so that it must be spun up anew.
+    ledger : bool
+    contact : bool
+        Keep the collider.
+    duration : float
+        Of its run [s].
+    """
+
+    changes: dict = field(default_factory=dict)
+    rests: bool = False
+    ledger: bool = True
+    contact: bool = True
+    duration: float = LAG_TIME
+
+    def parameters(self):
+        """SailParameters without the part."""
+        return replace(SailParameters(duration=self.duration), **self.changes)
+
+    def start(self):
+        """Where the nodes are at the release, (N, 3) [m]."""
+        return deployment.equilibrium(self.parameters() if self.rests else SailParameters())
+
+    def begin(self, positions=None):
+        """Release the sail without the part; returns mesh and MembraneScene."""
+        start = self.start() if positions is None else positions
+        built = deployment.begin(self.parameters(), start, self.ledger)
+        if not self.contact:
+            drop_collider()
+        return built
+
+
+LIGHT = 0.1 * SailParameters().tether_density
+COMPLETE = Part()
+PARTS = {
+    "no creases (beta = 0)": Part({"beta": 0.0}, rests=True),
+    "no penalty of passed creases (gamma = 1)": Part({"gamma": 1.0}, rests=True),
+    "no air drag": Part({"air_density": 0.0}),
+    "no damping (zeta = 0)": Part({"zeta": 0.0}),
+    "no gravity": Part({"gravity": 0.0}, rests=True),
+    "tethers of a tenth of the mass": Part({"tether_density": LIGHT, "dt": 2.5e-6}, rests=True),
+    "spool of 12 facets": Part({"spool_facets": 12}),
+    "no contact with the spool": Part(contact=False),
+    "no ledger": Part(ledger=False),
+    "half the time step": Part({"dt": 2.5e-6}, duration=SAMPLES[-1]),
+    "finer mesh (refine = 2)": Part({"refine": 2, "dt": 2.5e-6}, rests=True, duration=SAMPLES[-1]),
+}
+
+
+def answer(part, positions=None):
+    """Rates [-] and phases [deg] at SAMPLES and the largest lag [deg] (NaN: run too short)."""
+    p = part.parameters()
+    mesh, built = part.begin(positions)
+    stride, rows = round(INTERVAL / p.dt), round(p.duration / INTERVAL)
+    frames = [built.positions()]
+    for _ in range(rows):
+        scene.advance(stride)
+        frames.append(built.positions())
+    times = INTERVAL * np.arange(rows + 1)
+    azimuths = np.array([measures.tip_azimuths(mesh, x) for x in frames])
+    phase = np.degrees(measures.phase_difference(azimuths, p.omega * times).mean(axis=1))
+    at = [round(t / INTERVAL) for t in SAMPLES]
+    lag = -phase.min() if p.duration >= LAG_TIME else np.nan
+    return np.array([*(measures.deployment_rate(mesh, frames[i]) for i in at), *phase[at], lag])
+
+
+def step_time(part, steps):
+    """Processor time of a step [s], soon after the release, on one thread."""
+    part.begin()
+    scene.advance(steps // 10)
+    start = time.process_time()
+    scene.advance(steps)
+    return (time.process_time() - start) / steps
+
+
+def costs(parts, rounds, steps):
+    """Time of a step [us] and time for the same simulated time over COMPLETE's, by name.
+
+    Each is measured next to COMPLETE in every round; medians over the rounds.
+    """
+    steps_taken, ratios = {name: [] for name in parts}, {name: [] for name in parts}
+    for _ in range(rounds):
+        for name, part in parts.items():
+            base, own = step_time(COMPLETE, steps), step_time(part, steps)
+            steps_taken[name].append(1e6 * own)
+            ratios[name].append(own / part.parameters().dt / (base / SailParameters().dt))
+    return {n: (statistics.median(steps_taken[n]), statistics.median(ratios[n])) for n in parts}
+
+
+def line(name, dt, numbers, cost=None):
+    """A row of the table."""
+    values = ["" if np.isnan(v) else f"{v:.4g}" for v in numbers]
+    values += [f"{cost[0]:.0f}", f"{cost[1]:.2f}"] if cost else ["", ""]
+    return ",".join([f'"{name}"', f"{dt:g}", *values])
+
+
+def verdict(name, change, spread, cost):
+    """A line of advice on one part."""
+    rate, phase, lag = abs(change[1]), abs(change[3]), abs(change[4])
+    within = rate <= 2 * spread[1] and phase <= 2 * spread[3] and not lag > 2 * spread[4]
+    effect = f"rate {change[1]:+.3f} and phase {change[3]:+.2f} deg at {SAMPLES[1]:g} s"
+    if not np.isnan(lag):
+        effect += f", largest lag {change[4]:+.1f} deg"
+    said = "within" if within else "beyond"
+    return f"{name}: {effect} ({said} twice the spread); {cost[1]:.2f} of the time"
+
+
+def main():
+    """Measure, write the table, print the advice."""
+    parser = argparse.ArgumentParser(prog="parts", description=__doc__.splitlines()[0])
+    parser.add_argument("--rounds", type=int, default=3, help="pairs of runs that time a part")
+    parser.add_argument("--steps", type=int, default=1000, help="steps of each")
+    parser.add_argument("--members", type=int, default=3, help="runs that give the spread")
+    arguments = parser.parse_args()
+    start = time.perf_counter()
+
+    def tell(text):
+        print(f"parts: {time.perf_counter() - start:5.0f} s: {text}", file=sys.stderr, flush=True)
+
+    tell("the complete model")
+    rest = COMPLETE.start()
+    complete = answer(COMPLETE)
+    members = [complete]
+    members += [
+        answer(COMPLETE, deployment.perturbed(rest, seed)) for seed in range(1, arguments.members)
+    ]
+    spread = np.std(members, axis=0, ddof=1)
+    changes = {}
+    for name, part in PARTS.items():
+        tell(name)
+        changes[name] = answer(part) - complete
+    tell("times")
+    cost = costs({"complete": COMPLETE, **PARTS}, arguments.rounds, arguments.steps)
+
+    rows = [line("complete", COMPLETE.parameters().dt, complete, cost["complete"])]
+    rows.append(line("spread", COMPLETE.parameters().dt, spread))
+    rows += [line(n, p.parameters().dt, changes[n], cost[n]) for n, p in PARTS.items()]
+    TABLE.write_text(HEADER + "\n".join([COLUMNS, *rows]) + "\n")
+    for name in PARTS:
+        print(verdict(name, changes[name], spread, cost[name]))
+    print(f"Wrote {TABLE}")
+    tell("done")
+
+
+main()

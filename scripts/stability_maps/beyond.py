@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What the code does above the limit: refuse, or, if forced, stop; and how many steps that takes.
+
+The flat sail's film with a tiny perturbation runs at steps above the estimate with forceTimeStep.
+Counted are the steps from the start to where the kinetic energy is a million times the first, and
+from there to where the run is stopped by an exception. Predicted: an undamped mode above its
+limit grows by a factor a step, b + sqrt(b² - 1) with b = 2 (dt / limit)² - 1, until numbers
+overflow at 1e308.
+"""
+
+import numpy as np
+from membrane import scene
+from membrane.mesh import sail_mesh
+
+from .common import Model, O, figure, folder, save, write_table
+
+HEADER = (
+    "step / estimate [-]",
+    "refused unless forced",
+    "steps to a million times the energy",
+    "steps from there to the stop",
+    "predicted steps to the stop, taut",
+    "largest velocity seen [m/s]",
+    "message",
+)
+SPEED = 1e-6  # m/s
+
+
+def predicted(share, limit=1.01):
+    """Steps in which a taut mode overflows above its limit, `limit` times the estimate."""
+    b = 2 * (share / limit) ** 2 - 1
+    return 320 * np.log(10) / np.log(b + np.sqrt(b * b - 1))
+
+
+def refusal(model, step):
+    """What the engine says to a step that is not forced; empty if it runs."""
+    model.forces.forceTimeStep = False
+    O.dt = step
+    try:
+        scene.advance(1)
+    except RuntimeError as error:
+        return str(error)
+    finally:
+        model.forces.forceTimeStep = True
+    return ""
+
+
+def blow_up(share, zeta, most):
+    """Row of a run at `share` of the estimate, of at most `most` steps."""
+
+    def build():
+        mesh = sail_mesh()
+        size = mesh.film_size
+        made = Model(mesh.nodes[:size], mesh.triangles, engine={"zeta": zeta})
+        rng = np.random.default_rng(4)
+        made.place(made.rest, SPEED * rng.normal(size=made.rest.shape))
+        return made
+
+    model = build()
+    estimate = model.forces.criticalTimeStep()
+    refused = refusal(model, share * estimate)
+    model = build()
+    O.dt = share * estimate
+    start, grown, fastest, message = model.kinetic(), None, 0.0, ""
+    done = 0
+    try:
+        while done < most:
+            O.step()
+            done += 1
+            if grown is None or done % 20 == 0:
+                fastest = max(fastest, float(np.abs(model.velocities()).max()))
+                if grown is None and not model.kinetic() < 1e6 * start:
+                    grown = done
+    except RuntimeError as error:
+        message = str(error)
+    after = done - grown if message and grown is not None else -1
+    return [
+        share,
+        int(bool(refused)),
+        -1 if grown is None else grown,
+        after,
+        predicted(share) if share > 1.01 else np.inf,
+        fastest,
+        message or "not stopped",
+    ], refused
+
+
+def run(quick):
+    """Run above the limit; returns a line of text."""
+    rows = []
+    refused = ""
+    for share in (1.1, 2.0) if quick else (0.99, 1.02, 1.05, 1.1, 1.2, 1.5, 2.0, 3.0):
+        row, said = blow_up(share, 0.0, 1500 if quick else 6000)
+        rows.append(row)
+        refused = refused or said
+    out = folder(quick)
+    write_table(out / "beyond.csv", HEADER, rows)
+    draw(rows, out / "beyond.png")
+    stops = ", ".join(f"{r[3]} at {r[0]:g}" if r[3] >= 0 else f"none at {r[0]:g}" for r in rows)
+    return (
+        f'refused unless forced: {sum(r[1] for r in rows)} of {len(rows)}, with "{refused}"; '
+        f"forced, steps "
+        f"from a millionfold energy to the stop: {stops}; largest velocity before it "
+        f"{max(r[5] for r in rows):.1e} m/s"
+    )
+
+
+def draw(rows, path):
+    """Steps to the blow-up and from there to the stop, over the step."""
+    drawing, axes = figure(width=6.0)
+    axis = axes[0, 0]
+    for column, name in ((2, "start to a million times the energy"), (3, "from there to the stop")):
+        mine = [r for r in rows if r[column] >= 0]
+        axis.semilogy([r[0] for r in mine], [r[column] for r in mine], "o-", label=name)
+    mine = [r for r in rows if np.isfinite(r[4])]
+    axis.semilogy(
+        [r[0] for r in mine],
+        [r[4] for r in mine],
+        "k--",
+        label="predicted from start to stop, taut",
+    )
+    axis.axvline(1.0, color="C3", label="estimate: refused above")
+    axis.set(xlabel="step / estimate [-]", ylabel="steps [-]")
+    axis.legend(fontsize=7)
+    axis.grid(alpha=0.3)
+    save(drawing, path)

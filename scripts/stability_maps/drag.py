@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Explicit air drag (10) on a plate that moves face on: the step at which it turns back, and
+grows.
+
+Each node of a triangle has the mass rho_f h S / 3 and the drag rho S V² / 6 at the velocity V
+half a step before, so that V' = V (1 - rho V dt / (2 rho_f h)): it reverses above dt = 2 rho_f h
+/ (rho V) and grows above twice that, whatever the mesh. A node at which triangles meet at angles,
+or one with a tip mass, is slower, so safer.
+"""
+
+from itertools import product
+
+import numpy as np
+from membrane import scene
+from membrane.mesh import sail_mesh
+
+from .common import Model, O, bisect, figure, folder, save, two_triangles, write_table
+
+FILM, THICKNESS = 1420.0, 7.5e-6  # kg/m3, m
+ATMOSPHERE = 1.204  # kg/m3
+PAPER_STEP = 5e-6  # s
+TIP_SPEED = 6.1  # m/s, of the flat sail's corners at 6 pi rad/s
+HEADER = (
+    "air density [kg/m3]",
+    "thickness [m]",
+    "speed [m/s]",
+    "reverses above, predicted [s]",
+    "reverses above, measured [s]",
+    "grows above, predicted [s]",
+    "grows above, measured [s]",
+    "estimate of the engine [s]",
+)
+
+
+def limit(air, speed, thickness=THICKNESS, film=FILM):
+    """Step [s] above which a plate face on to its `speed` [m/s] is turned back by its drag."""
+    return 2 * film * thickness / (air * speed)
+
+
+def plate(air, thickness):
+    """A Model of a flat plate of two triangles in the x-z plane."""
+    return Model(
+        two_triangles(np.pi),
+        ((0, 1, 2), (1, 0, 3)),
+        material=scene.film(thickness=thickness),
+        engine={"air_density": air},
+    )
+
+
+def speed_after(model, speed, step, steps):
+    """Velocity [m/s] along the normal after `steps` steps of a plate that starts at `speed`."""
+    normal = np.cross(model.rest[1] - model.rest[0], model.rest[2] - model.rest[0])
+    normal /= np.linalg.norm(normal)
+    model.place(model.rest, np.tile(speed * normal, (4, 1)))
+    O.dt = step
+    scene.advance(steps)
+    return float(model.velocities().mean(axis=0) @ normal)
+
+
+def sail_in_air(air, share, seconds):
+    """Step [s], and largest and last kinetic energy over the first, of the spinning sail.
+
+    It also moves face on at TIP_SPEED.
+    """
+    mesh = sail_mesh()
+    size = mesh.film_size
+    model = Model(mesh.nodes[:size], mesh.triangles, engine={"air_density": air, "zeta": 0.02})
+    O.dt = share * model.forces.criticalTimeStep()
+    spin = 6 * np.pi
+    velocities = np.column_stack(
+        [-spin * model.rest[:, 1], spin * model.rest[:, 0], np.full(size, TIP_SPEED)]
+    )
+    model.place(model.rest, velocities)
+    start, largest = model.kinetic(), 0.0
+    for _ in range(int(seconds / O.dt) // 200 + 1):
+        scene.advance(200)
+        largest = max(largest, model.kinetic())
+    return O.dt, largest / start, model.kinetic() / start
+
+
+def run(quick):
+    """Measure plates and the sail; returns a line of text."""
+    airs = (1.2e-3, ATMOSPHERE, 1000.0)
+    rows, errors = [], []
+    for air, thickness, speed in product(airs, (THICKNESS, 25e-6), (1.0, TIP_SPEED, 100.0)):
+        model = plate(air, thickness)
+        estimate = model.forces.criticalTimeStep()
+        turn = limit(air, speed, thickness)
+
+        def reverses(step):
+            return speed_after(model, speed, step, 1) < 0
+
+        def swells(step):
+            return abs(speed_after(model, speed, step, 1)) > speed
+
+        rounds = 8 if quick else 20
+        back = bisect(reverses, 0.8 * turn, 1.3 * turn, rounds)
+        blow = bisect(swells, 1.6 * turn, 2.6 * turn, rounds)
+        rows.append([air, thickness, speed, turn, back, 2 * turn, blow, estimate])
+        errors += [abs(back / turn - 1), abs(blow / turn / 2 - 1)]
+    binding = limit(ATMOSPHERE, 1.0) / PAPER_STEP
+    step, most, end = sail_in_air(ATMOSPHERE, 0.9, 0.005 if quick else 0.05)
+    out = folder(quick)
+    write_table(out / "drag.csv", HEADER, rows)
+    draw(rows, out / "drag.png")
+    return (
+        f"predicted and measured limits agree within {max(errors):.1e}; at 1 atm on 7.5 um film "
+        f"dt < {limit(ATMOSPHERE, TIP_SPEED):.2e} s at {TIP_SPEED} m/s, and {PAPER_STEP:g} s "
+        f"holds up to "
+        f"{binding:.0f} m/s; the flat sail, spinning and moving face on at {TIP_SPEED} m/s in "
+        f"1 atm, at "
+        f"dt = {step:.3g} s: largest kinetic energy {most:.3f}, last {end:.3g} of the first"
+    )
+
+
+def draw(rows, path):
+    """Limits over density times speed."""
+    drawing, axes = figure(width=6.0)
+    axis = axes[0, 0]
+    for thickness, color in ((THICKNESS, "C0"), (25e-6, "C1")):
+        mine = sorted([r for r in rows if r[1] == thickness], key=lambda r: r[0] * r[2])
+        flux = np.array([r[0] * r[2] for r in mine])
+        name = f"{1e6 * thickness:g} um"
+        axis.loglog(flux, [r[3] for r in mine], color=color, label=f"predicted: reverses, {name}")
+        axis.loglog(
+            flux, [r[5] for r in mine], "--", color=color, label=f"predicted: grows, {name}"
+        )
+        axis.loglog(flux, [r[4] for r in mine], "o", color=color, label=f"measured, {name}")
+        axis.loglog(flux, [r[6] for r in mine], "s", color=color)
+    axis.axhline(PAPER_STEP, color="k", linewidth=0.8, label="the paper's step")
+    axis.axvline(ATMOSPHERE * TIP_SPEED, color="C3", linewidth=0.8, label="1 atm, tip speed")
+    axis.set(xlabel="air density x speed [kg/(m2 s)]", ylabel="time step [s]")
+    axis.legend(fontsize=7)
+    axis.grid(alpha=0.3)
+    save(drawing, path)
