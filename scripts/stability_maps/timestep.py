@@ -18,7 +18,7 @@ from .common import Model, O, bisect, figure, folder, grows, save, write_table
 
 TINY, LARGE = 1e-6, 1.0  # m/s
 # Strain of the tethers of the flat sail: at 0 they change between slack and taut at any motion.
-TAUT = 1e-5
+TAUT = 1e-3
 TIP_MASS = 0.36e-3
 HEADER = (
     "state",
