@@ -194,21 +194,26 @@ def quiet():
         yield
 
 
-@lru_cache(maxsize=None)
-def released_sail():
-    """File with the paper's sail just after its release, at its own time step.
+def release_sail(**changes):
+    """Put the paper's sail just after its release into the scene, at its own time step.
 
     The spin-up is cut short: the state need not be at rest to the last digit.
     """
     O.reset()
-    parameters = SailParameters(spin_up_tolerance=1e-3)
+    parameters = SailParameters(spin_up_tolerance=1e-3, **changes)
     mesh, spinning = sail.build(parameters)
     with quiet():
         sail.spin_up(spinning, parameters)
     O.dt = parameters.dt
     scene.release(spinning, parameters.omega, mesh.guide_nodes.ravel())
+
+
+@lru_cache(maxsize=None)
+def released_sail():
+    """File with the scene of `release_sail`."""
+    release_sail()
     path = scratch() / "released.yade.gz"
-    O.save(str(path))
+    O.save(str(path), quiet=True)
     O.reset()
     return path
 

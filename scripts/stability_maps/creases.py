@@ -8,7 +8,7 @@ pump.
   work of (7) on the way to theta = 0 is beta E J l pi²/8 divided by the height, without bound;
   with rest lengths it vanishes with the height.
 - `law`: force of the plugin over the angle, for both laws and two natural angles.
-- `swing`: a free pair of equal triangles that swings through theta = 0 and pi; energy at three
+- `swing`: a free pair of equal triangles that swings through theta = 0; energy at three
   steps.
 - `momentum`: a free pair of unequal triangles: angular momentum about its centre, which nothing
   outside changes.
