@@ -14,16 +14,21 @@ STEPS, SAIL_SIZE = 1000, 0.455
 
 class TestThreads(unittest.TestCase):
     def run_on(self, threads):
-        """Positions (N, 3) [m] after STEPS steps of the released sail on so many threads."""
+        """Positions (N, 3) [m] after STEPS steps of the released sail on so many threads.
+
+        And the tracked strain energy [J] of the first step.
+        """
         out = scratch() / f"threads_{threads}.npz"
         done = run_yade(DRIVER, released_sail(), STEPS, out, threads=threads)
         self.assertEqual(done.returncode, 0, done.stderr)
         with np.load(out) as found:
             self.assertEqual(found["threads"], threads)
-            return found["positions"]
+            return found["positions"], float(found["energy"])
 
     def test_two_threads_give_the_positions_of_one(self):
-        one, two = self.run_on(1), self.run_on(2)
+        (one, energy), (two, energy_of_two) = self.run_on(1), self.run_on(2)
+        self.assertGreater(energy, 1e-9)
+        self.assertAlmostEqual(energy_of_two / energy, 1, delta=1e-9)
         O.reset()
         O.load(str(released_sail()), quiet=True)
         start = node_states(engines_by_class()["MembraneForceEngine"].membrane)[0]

@@ -8,10 +8,25 @@
 #include <core/InteractionContainer.hpp>
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
+#include <mutex>
 
 namespace yade {
 
 YADE_PLUGIN((Law2_MembraneGeom_MembranePhys_Buckling));
+
+namespace {
+
+/// Finds the place of an energy that is reset in every step. YADE's own search makes two from two threads at once.
+void findEnergy(EnergyTracker& energies, const string& name, int& index) {
+    static std::mutex guard;
+    if (__atomic_load_n(&index, __ATOMIC_ACQUIRE) >= 0) return;
+    const std::lock_guard<std::mutex> lock(guard);
+    int found = index;
+    if (found < 0) energies.findId(name, found, /*reset in every step*/ true);
+    __atomic_store_n(&index, found, __ATOMIC_RELEASE);
+}
+
+} // namespace
 
 bool Law2_MembraneGeom_MembranePhys_Buckling::go(shared_ptr<IGeom>& geomBase, shared_ptr<IPhys>& physBase,
                                                  Interaction* link) {
@@ -31,9 +46,12 @@ bool Law2_MembraneGeom_MembranePhys_Buckling::go(shared_ptr<IGeom>& geomBase, sh
     addForce(link->getId1(), -phys.normalForce, scene);
     addForce(link->getId2(), phys.normalForce, scene);
 
-    if (scene->trackEnergy)
-        scene->energy->add(::membrane::sideEnergy(geom.length, phys.kn, phys.restLength, phys.criticalLength),
-                           "membraneElastic", energyIndex, /*reset in every step*/ true);
+    if (scene->trackEnergy) {
+        const string name = "membraneElastic";
+        findEnergy(*scene->energy, name, energyIndex);
+        scene->energy->add(::membrane::sideEnergy(geom.length, phys.kn, phys.restLength, phys.criticalLength), name,
+                           energyIndex, /*reset in every step*/ true);
+    }
     return true;
 }
 
