@@ -4,11 +4,17 @@
 Written from the paper's equations (4)...(10) and the readings in MODEL.md, not from the plugin's
 sources. Nothing here imports YADE or the plugin, and nothing of the plugin imports this.
 
+Two bounds are not in the paper or MODEL.md but among the README's assumptions: levers of creases
+stop growing where a triangle has collapsed (`collapsed`), and damping never makes a taut cable push
+(`may_push`). Both are on by default; collapsed=0 and may_push=True give the equations as they are.
+
 Shapes: N nodes, T triangles, M sides, C creases. SI units, angles in radians. Forces are those on
 the nodes, (N, 3), in N. Functions do not change their arguments.
 """
 
 import numpy as np
+
+COLLAPSED = 0.05  # of its rest value: where a length or height of a crease stops shrinking [-]
 
 
 def dot(a, b):
@@ -200,24 +206,49 @@ def bending_stiffness(young, thickness):
     return young * thickness**3 / 12.0
 
 
-def crease_balance(positions, creases, frame, force_c, force_d):
+def bounded(now, before, name, collapsed):
+    """Length or height (C,) [m] to divide by: that of `now`, at least a share of that `before`.
+
+    now, before: crease_frame in the present and in the rest state; name: of a length in them;
+    collapsed: that share [-], 0 for no bound.
+    """
+    return np.maximum(now[name], collapsed * before[name])
+
+
+def crease_balance(positions, creases, now, before, force_c, force_d, collapsed):
     """Forces (N, 3) of all creases from those on C and D, (C, 3) each, with (8) on A and B.
 
+    now, before: crease_frame in the present and in the rest state; collapsed: see `bounded`.
     The lengths on AB are signed and present ones: the four forces add up to zero, and so do their
-    moments but for those about AB, which cancel only where F_C l_CE = F_D l_DF.
+    moments but for those about AB, which cancel only where F_C l_CE = F_D l_DF. Where AB is
+    bounded, B's share is l_AE over the bounded length and A has the rest: the forces still add up
+    to zero, their moments do not, and the shares depend on which end is A.
     """
-    foot_c, foot_d = frame["foot_c"][:, None], frame["foot_d"][:, None]
+    shrink = now["length"] / bounded(now, before, "length", collapsed)
+    foot_c, foot_d = (shrink * now["foot_c"])[:, None], (shrink * now["foot_d"])[:, None]
     force_a = -(1.0 - foot_c) * force_c - (1.0 - foot_d) * force_d
     force_b = -foot_c * force_c - foot_d * force_d
     forces = (force_a, force_b, force_c, force_d)
     return sum(add_up(len(positions), creases[:, i], f) for i, f in enumerate(forces))
 
 
-def crease_forces_paper(positions, rest, creases, inside, young, thickness, beta, gamma, theta0):
+def crease_forces_paper(
+    positions,
+    rest,
+    creases,
+    inside,
+    young,
+    thickness,
+    beta,
+    gamma,
+    theta0,
+    collapsed=COLLAPSED,
+):
     """Forces (N, 3) [N] of creases by (7) and (8) as printed, with the rest lengths in (7).
 
     positions, rest (N, 3) [m]; creases (C, 4); inside (C,), see crease_angle; young [Pa]; thickness
-    [m]; beta, gamma [-]; theta0 [rad].
+    [m]; beta, gamma [-]; theta0 [rad]; collapsed [-]: share of its rest length below which l_AB in
+    (8) counts as that share, the README's assumption; 0: (8) as printed.
     """
     now, before = crease_frame(positions, creases), crease_frame(rest, creases)
     theta = angle_of(now, inside)
@@ -228,7 +259,7 @@ def crease_forces_paper(positions, rest, creases, inside, young, thickness, beta
     # theta is the turn from the face of C to that of D, times inside: forward for C closes it
     force_c = (inside * moment / before["height_c"] ** 2)[:, None] * now["normal_c"]
     force_d = -(inside * moment / before["height_d"] ** 2)[:, None] * now["normal_d"]
-    return crease_balance(positions, creases, now, force_c, force_d)
+    return crease_balance(positions, creases, now, before, force_c, force_d, collapsed)
 
 
 def crease_modulus(rest, creases, young, thickness, beta):
@@ -250,21 +281,32 @@ def crease_energy(positions, rest, creases, inside, young, thickness, beta, gamm
 
 
 def crease_forces_conservative(
-    positions, rest, creases, inside, young, thickness, beta, gamma, theta0
+    positions,
+    rest,
+    creases,
+    inside,
+    young,
+    thickness,
+    beta,
+    gamma,
+    theta0,
+    collapsed=COLLAPSED,
 ):
     """Forces (N, 3) [N] of creases by the conservative law: minus the gradient of crease_energy.
 
     The angle changes by one over the present height with a tip that moves along its face's normal;
     A and B follow from (8), since rigid motion changes no angle. Arguments as in
-    crease_forces_paper.
+    crease_forces_paper; heights are bounded as l_AB is, and where either is, this is no gradient.
     """
     modulus = crease_modulus(rest, creases, young, thickness, beta)
-    now = crease_frame(positions, creases)
+    now, before = crease_frame(positions, creases), crease_frame(rest, creases)
     theta = angle_of(now, inside)
     moment = modulus * ((theta - theta0) + (gamma - 1.0) * np.minimum(theta, 0.0))
-    force_c = (inside * moment / now["height_c"])[:, None] * now["normal_c"]
-    force_d = -(inside * moment / now["height_d"])[:, None] * now["normal_d"]
-    return crease_balance(positions, creases, now, force_c, force_d)
+    height_c = bounded(now, before, "height_c", collapsed)
+    height_d = bounded(now, before, "height_d", collapsed)
+    force_c = (inside * moment / height_c)[:, None] * now["normal_c"]
+    force_d = -(inside * moment / height_d)[:, None] * now["normal_d"]
+    return crease_balance(positions, creases, now, before, force_c, force_d, collapsed)
 
 
 # --- damping (9) ---
@@ -276,17 +318,33 @@ def damping_coefficient(stiffness, masses, sides, zeta):
     return 2.0 * zeta * np.sqrt(stiffness * mean_mass)
 
 
-def damping_forces(positions, velocities, sides, rest_length, stiffness, masses, zeta, cable):
+def damping_forces(
+    positions,
+    velocities,
+    sides,
+    rest_length,
+    stiffness,
+    masses,
+    zeta,
+    cable,
+    may_push=False,
+):
     """Damping forces (N, 3) [N] along the sides, (9): against the rate of each side's length.
 
     velocities (N, 3) [m/s]; stiffness (M,) not negative; cable (M,) bool: a cable shorter than its
-    rest length is not damped, a side of the film always is.
+    rest length is not damped, a side of the film always is. may_push: whether damping may exceed
+    the elastic tension of a taut cable that shortens, so that it pushes its ends apart; False, the
+    README's assumption: it takes away no more than that tension.
     """
     direction, length = side_geometry(positions, sides)
     rate = dot(velocities[sides[:, 1]] - velocities[sides[:, 0]], direction)
     slack = cable & (length < rest_length)
     coefficient = np.where(slack, 0.0, damping_coefficient(stiffness, masses, sides, zeta))
-    return pull_together(len(positions), sides, direction, coefficient * rate)
+    tension = coefficient * rate
+    if not may_push:
+        elastic = stiffness * (length - rest_length)  # of a taut cable: (3), as its alpha is 0
+        tension = np.where(cable & ~slack, np.maximum(tension, -elastic), tension)
+    return pull_together(len(positions), sides, direction, tension)
 
 
 # --- air drag (10) ---

@@ -4,6 +4,7 @@
 scripts/verify.py does it on all of them.
 """
 
+import functools
 import importlib
 import sys
 import unittest
@@ -17,7 +18,7 @@ verification = importlib.import_module("verification")
 forces = importlib.import_module("verification.forces")
 
 EVEN, UNEVEN = (options for options, _ in forces.FAST.values())
-STATES = ((EVEN, "flat"), (EVEN, "folded"), (UNEVEN, "crumpled"))
+STATES = ((EVEN, "flat"), (EVEN, "folded"), (EVEN, "collapsed"), (UNEVEN, "crumpled"))
 
 
 def differences(sail, shape):
@@ -36,8 +37,6 @@ class TestReference(SceneTest):
     def test_every_term_is_that_of_the_reference(self):
         for options, shape in STATES:
             for title, error in differences(forces.StandingSail(**options), shape).items():
-                if title.endswith((forces.AT_COLLAPSED, forces.AT_PUSHED)):
-                    continue  # the plugin's own bounds; scripts/verify.py reports them
                 with self.subTest(title, shape=shape):
                     self.assertLess(error, forces.AGREEMENT)
 
@@ -47,7 +46,6 @@ class TestReference(SceneTest):
             sail = forces.StandingSail(**options)
             for branch, count in forces.branches(sail, forces.random_state(sail, shape)).items():
                 seen[branch] = seen.get(branch, 0) + count
-        seen.pop("creases collapsed")
         for branch, count in seen.items():
             self.assertGreater(count, 1, branch)
 
@@ -66,9 +64,9 @@ class TestEnergy(SceneTest):
 class TestSensitivity(SceneTest):
     """What the comparison would miss, it would not test."""
 
-    def check_noticed(self, title, **wrong):
+    def check_noticed(self, title, shape="crumpled", **wrong):
         with mock.patch.multiple(forces.paper, **wrong):
-            found = differences(forces.StandingSail(**UNEVEN), "crumpled")
+            found = differences(forces.StandingSail(**UNEVEN), shape)
         self.assertGreater(found[title], 1e-6)
 
     def test_wrong_buckling_length_is_noticed(self):
@@ -87,7 +85,7 @@ class TestSensitivity(SceneTest):
             return frame
 
         for law in ("paper", "conservative"):
-            self.check_noticed(f"creases (7), (8), {law}, theta0 0", crease_frame=swapped)
+            self.check_noticed(forces.CREASES.format(law, 0), crease_frame=swapped)
 
     def test_another_branch_cut_is_noticed(self):
         right = forces.paper.angle_of
@@ -97,9 +95,31 @@ class TestSensitivity(SceneTest):
 
     def test_damping_of_slack_tethers_is_noticed(self):
         right = forces.paper.damping_forces
+
+        def none_slack(x, v, sides, rest_length, *others):
+            _, length = forces.paper.side_geometry(x, sides)
+            return right(x, v, sides, np.minimum(rest_length, length), *others)
+
+        for zeta in (forces.ZETA, forces.STRONG):
+            self.check_noticed(forces.DAMPING.format(zeta), damping_forces=none_slack)
+
+    def test_tethers_that_push_are_noticed(self):
+        right = forces.paper.damping_forces
         self.check_noticed(
-            "damping (9)", damping_forces=lambda *rest: right(*rest[:-1], np.zeros_like(rest[-1]))
+            forces.DAMPING.format(forces.STRONG) + forces.AT_PUSHED,
+            "flat",
+            damping_forces=lambda *rest: right(*rest, may_push=True),
         )
+
+    def test_levers_bounded_elsewhere_or_not_at_all_are_noticed(self):
+        for law in ("paper", "conservative"):
+            name = f"crease_forces_{law}"
+            right = getattr(forces.paper, name)
+            for share in (0.0, 0.99 * forces.paper.COLLAPSED):
+                with self.subTest(law, collapsed=share):
+                    wrong = functools.partial(right, collapsed=share)
+                    title = forces.CREASES.format(law, 0) + forces.AT_COLLAPSED
+                    self.check_noticed(title, "collapsed", **{name: wrong})
 
 
 class TestCheck(unittest.TestCase):

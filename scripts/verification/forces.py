@@ -18,7 +18,7 @@ from yade import wrapper as yade
 
 from reference import forces as paper
 
-from . import at_most
+from . import at_most, recorded
 
 YOUNG, POISSON, DENSITY, THICKNESS = 3.2e9, 0.34, 1420.0, 7.5e-6
 ALPHA, ALPHA_CREASE = 100.0, 1000.0
@@ -27,20 +27,26 @@ TIP_MASS = 0.36e-3
 BETA, GAMMA, ZETA, AIR_DENSITY = 30.0, 100.0, 0.02, 1.2e-3
 OMEGA = 6 * np.pi
 TURNED = 0.9  # another natural angle [rad]
+STRONG = 1.0  # damping ratio at which tethers would push
 
 AGREEMENT = 1e-12  # of plugin and reference, over the largest value
 SHORTENING = 1e-11  # the same for L0 - l_cr: 1e-4 of the lengths, whose last digit is 2e-12 of it
 DIFFERENCE = 1e-8  # of force and difference of energy, over the largest force
 STRAIN_STEP, CREASE_STEP, FIELD_STEP = 1e-6, 5e-6, 1e-3  # of those differences [m]
 LOWEST = 2e-3  # height [m] of a crease's triangles under which that step is too long
+STRETCH = 3e-3  # of tethers of the flat sail
 ASKED = 500  # nodes of each state at which energies are differenced
-# Where the plugin departs from MODEL.md; told apart from all else.
-# Below this share of its rest value a crease's height or length l_AB is collapsed: the plugin
-# bounds the levers 1/height and 1/l_AB.
-COLLAPSED = 0.05
+# Two bounds of the README's assumptions that MODEL.md lacks act at some nodes only. These are told
+# apart from all others, each compared over its own largest force, and there the bounds' effect is
+# recorded: on levers of creases whose height or length is collapsed, and on the damping of tethers
+# that shorten so fast that it exceeds their tension.
+CREASES, DAMPING = "creases (7), (8), {}, theta0 {:g}", "damping (9), zeta {:g}"
+TOGETHER = "all together, zeta {:g}"
+HEIGHTS = ("height_c", "height_d")
 AT_COLLAPSED = ", at collapsed creases"
-# On tethers whose damping force exceeds their tension, as they shorten, the plugin bounds it.
 AT_PUSHED = ", at tethers it would push"
+AT_EITHER = ", at either"
+EFFECT = ": effect of the bound"
 
 FAST = {"sail": ({}, (0,)), "uneven sail": ({"jitter": 3e-3}, (0,))}  # options of the sail, seeds
 FULL = {
@@ -48,6 +54,18 @@ FULL = {
     "uneven sail": ({"jitter": 3e-3}, (0, 1, 2)),
     "sail, refine 2": ({"refine": 2}, (0,)),
 }
+# Effects of the bounds when last looked at, in the states of FAST and of FULL; how often they act.
+LAST_EFFECTS = {
+    DAMPING.format(STRONG) + AT_PUSHED + EFFECT: (0.5153, 0.6109),
+    CREASES.format("paper", 0) + AT_COLLAPSED + EFFECT: (0.5930, 0.5960),
+    CREASES.format("paper", TURNED) + AT_COLLAPSED + EFFECT: (0.5930, 0.5960),
+    CREASES.format("conservative", 0) + AT_COLLAPSED + EFFECT: (0.8826, 0.8826),
+    CREASES.format("conservative", TURNED) + AT_COLLAPSED + EFFECT: (0.8824, 0.8824),
+    "creases of bounded length: share": (0.003053, 0.002599),
+    "creases of bounded height: share": (0.004884, 0.004084),
+    "tethers pushed: share": (0.2719, 0.2494),
+}
+CHANGE = 0.1  # of those numbers, from which on they are no longer the same
 
 
 @dataclass
@@ -173,10 +191,17 @@ def turned(rng, positions):
 
 
 def flat(sail, rng):
-    """The flat sail, its nodes off by a tenth of a millimetre, those of tethers by a micrometre."""
+    """The flat sail, its nodes off by a tenth of a millimetre, those of tethers by a micrometre.
+
+    Tethers are stretched by so much that the last digit of a length is 1e-13 of the tension.
+    """
     off = np.full((len(sail.rest), 1), 1e-4)
-    off[sail.mesh.tether_nodes] = 1e-6
-    return sail.rest + off * rng.normal(size=sail.rest.shape)
+    moved = sail.rest.copy()
+    for tether in sail.mesh.cables.reshape(4, -1, 2):
+        nodes, corner = tether[:, 0], tether[-1, 1]
+        off[[*nodes, corner]] = 1e-6
+        moved[nodes] += STRETCH * (sail.rest[nodes] - sail.rest[corner])
+    return moved + off * rng.normal(size=moved.shape)
 
 
 def crumpled(sail, rng):
@@ -271,16 +296,19 @@ def scalar_pairs(sail, state):
     return pairs
 
 
-def collapsed_creases(sail, state):
-    """Which creases (C,) bool of a State are collapsed."""
+def collapsed_creases(sail, state, names=("length", *HEIGHTS)):
+    """Which creases (C,) bool of a State are collapsed: one of these names is bounded."""
     now = paper.crease_frame(state.positions, sail.creases)
     rest = paper.crease_frame(sail.rest, sail.creases)
-    shares = [now[name] / rest[name] for name in ("length", "height_c", "height_d")]
-    return np.min(shares, axis=0) < COLLAPSED
+    shares = [now[name] / rest[name] for name in names]
+    return np.min(shares, axis=0) < paper.COLLAPSED
 
 
-def crease_pairs(sail, state):
-    """Forces (N, 3) [N] of the creases by both laws: {title: (plugin's, reference's)}."""
+def crease_pairs(sail, state, **bound):
+    """Forces (N, 3) [N] of the creases by both laws: {title: (plugin's, reference's)}.
+
+    bound: nothing, or `collapsed` of the reference.
+    """
     sail.place(state)
     laws = {"paper": paper.crease_forces_paper, "conservative": paper.crease_forces_conservative}
     pairs = {}
@@ -288,8 +316,23 @@ def crease_pairs(sail, state):
         for beta, gamma, theta0 in ((BETA, GAMMA, 0.0), (3.0, 7.0, TURNED)):
             engine = sail.engine(beta=beta, gamma=gamma, theta0=theta0, creaseLaw=law)
             film = YOUNG, THICKNESS, beta, gamma, theta0
-            expected = function(state.positions, sail.rest, sail.creases, sail.inside, *film)
-            pairs[f"creases (7), (8), {law}, theta0 {theta0:g}"] = (sail.forces(engine), expected)
+            places = state.positions, sail.rest, sail.creases, sail.inside
+            expected = function(*places, *film, **bound)
+            pairs[CREASES.format(law, theta0)] = (sail.forces(engine), expected)
+    return pairs
+
+
+def damping_pairs(sail, state, **bound):
+    """Forces (N, 3) [N] of damping: {title: (plugin's, reference's)}.
+
+    bound: nothing, or `may_push` of the reference.
+    """
+    sail.place(state)
+    pairs = {}
+    for zeta in (ZETA, STRONG):
+        sides = sail.sides, sail.lengths, sail.stiffness, sail.masses, zeta, sail.cable
+        expected = paper.damping_forces(state.positions, state.velocities, *sides, **bound)
+        pairs[DAMPING.format(zeta)] = (sail.forces(sail.engine(zeta=zeta)), expected)
     return pairs
 
 
@@ -298,49 +341,77 @@ def force_pairs(sail, state):
     sail.place(state)
     x, v = state.positions, state.velocities
     sides = paper.side_forces(x, sail.sides, sail.lengths, sail.critical, sail.stiffness)
-    damping = paper.damping_forces(
-        x, v, sail.sides, sail.lengths, sail.stiffness, sail.masses, ZETA, sail.cable
-    )
+    damping = damping_pairs(sail, state)
     drag = paper.drag_forces(x, v, sail.mesh.triangles, AIR_DENSITY)
     creases = crease_pairs(sail, state)
-    everything = sail.engine(beta=BETA, gamma=GAMMA, zeta=ZETA, airDensity=AIR_DENSITY)
-    total = sides + damping + drag + creases["creases (7), (8), paper, theta0 0"][1]
-    return {
+    pairs = {
         "sides (3), (6)": (sail.forces(sail.loop), sides),
         **creases,
-        "damping (9)": (sail.forces(sail.engine(zeta=ZETA)), damping),
+        **damping,
         "drag (10)": (sail.forces(sail.engine(airDensity=AIR_DENSITY)), drag),
-        "all together": (sail.forces(sail.loop, everything), total),
     }
+    for zeta in (ZETA, STRONG):
+        everything = sail.engine(beta=BETA, gamma=GAMMA, zeta=zeta, airDensity=AIR_DENSITY)
+        added = creases[CREASES.format("paper", 0)], damping[DAMPING.format(zeta)]
+        total = sides + drag + sum(expected for _, expected in added)
+        pairs[TOGETHER.format(zeta)] = (sail.forces(sail.loop, everything), total)
+    return pairs
 
 
-def pushed_tethers(sail, state):
-    """Which sides (S,) bool are taut tethers that shorten so fast that damping exceeds tension."""
+def pushed_tethers(sail, state, zeta):
+    """Which sides (S,) bool are taut tethers whose damping by zeta would exceed their tension."""
     direction, length = paper.side_geometry(state.positions, sail.sides)
     ends = state.velocities[sail.sides]
     rate = paper.dot(ends[:, 1] - ends[:, 0], direction)
-    damping = rate * paper.damping_coefficient(sail.stiffness, sail.masses, sail.sides, ZETA)
+    damping = rate * paper.damping_coefficient(sail.stiffness, sail.masses, sail.sides, zeta)
     tension = paper.side_tension(length, sail.lengths, sail.critical, sail.stiffness)
     return sail.cable & (length > sail.lengths) & (tension + damping < 0)
+
+
+def bounded_nodes(sail, state):
+    """Where bounds act on the forces of a State: function of a title -> (nodes (N,) bool, name)."""
+    nodes = np.arange(len(sail.rest))
+    low = np.isin(nodes, sail.creases[collapsed_creases(sail, state)])
+    groups = {"creases": (low, AT_COLLAPSED)}
+    for zeta in (ZETA, STRONG):
+        pushed = np.isin(nodes, sail.sides[pushed_tethers(sail, state, zeta)])
+        groups[DAMPING.format(zeta)] = pushed, AT_PUSHED
+        groups[TOGETHER.format(zeta)] = low | pushed, AT_EITHER
+    nowhere = np.zeros(len(nodes), dtype=bool), ""
+    return lambda title: next(
+        (g for start, g in groups.items() if title.startswith(start)), nowhere
+    )
 
 
 def state_differences(sail, state):
     """Differences of plugin and reference in a State: {title: [-]}.
 
-    Forces at nodes where the plugin departs from MODEL.md are told apart from the others.
+    Forces at nodes where bounds act are told apart from the others.
     """
     differences = {title: difference(*pair) for title, pair in scalar_pairs(sail, state).items()}
-    nodes = np.arange(len(sail.rest))
-    low = np.isin(nodes, sail.creases[collapsed_creases(sail, state)])
-    pushed = np.isin(nodes, sail.sides[pushed_tethers(sail, state)])
-    apart = {"creases": (low, AT_COLLAPSED), "damping": (pushed, AT_PUSHED)}
+    bounded = bounded_nodes(sail, state)
     for title, (found, expected) in force_pairs(sail, state).items():
-        there, where = apart.get(title.split()[0], (np.zeros(len(nodes), dtype=bool), ""))
-        others = ~(low | pushed) if title == "all together" else ~there
-        differences[title] = difference(found[others], expected[others])
+        there, where = bounded(title)
+        differences[title] = difference(found[~there], expected[~there])
         if there.any():
             differences[title + where] = difference(found[there], expected[there])
     return differences
+
+
+def bound_effects(sail, state):
+    """What the bounds change in a State where they act: {title: [-]}.
+
+    The largest difference of the plugin's forces and those of MODEL.md, without bounds, over the
+    largest of the latter at these nodes.
+    """
+    pairs = crease_pairs(sail, state, collapsed=0.0)
+    pairs.update(damping_pairs(sail, state, may_push=True))
+    bounded, effects = bounded_nodes(sail, state), {}
+    for title, (found, without) in pairs.items():
+        there, where = bounded(title)
+        if there.any():
+            effects[title + where + EFFECT] = difference(found[there], without[there])
+    return effects
 
 
 def law_difference(sail):
@@ -363,8 +434,9 @@ def branches(sail, state):
         "creases open": np.sum((theta > 0) & (theta < np.pi)),
         "creases passed through": np.sum(theta < 0),
         "creases beyond flat": np.sum(theta > np.pi),
-        "creases collapsed": np.sum(collapsed_creases(sail, state)),
-        "tethers pushed": np.sum(pushed_tethers(sail, state)),
+        "creases of bounded length": np.sum(collapsed_creases(sail, state, ["length"])),
+        "creases of bounded height": np.sum(collapsed_creases(sail, state, HEIGHTS)),
+        "tethers pushed": np.sum(pushed_tethers(sail, state, STRONG)),
     }
 
 
@@ -454,6 +526,32 @@ def energy_differences(sail, state):
 # --- checks ---
 
 
+def bound_checks(full, effects, seen, states):
+    """Recorded checks of what the bounds change and how often they act.
+
+    effects: {title: [(effect [-], state's name)]}; seen: sums of `branches`; states: their number.
+    """
+    numbers = {}
+    for title, results in effects.items():
+        effect, label = max(results)
+        source = f"reference/forces.py without it; in {len(results)} of {states} states, most: "
+        numbers[title] = effect, source + label
+    creases = sum(seen[f"creases {at}"] for at in ("open", "passed through", "beyond flat"))
+    shares = {
+        "creases of bounded length": creases,
+        "creases of bounded height": creases,
+        "tethers pushed": seen["tethers taut"],
+    }
+    for branch, of_all in shares.items():
+        source = f"{seen[branch]} of {of_all}, in {states} states"
+        numbers[f"{branch}: share"] = seen[branch] / of_all, source
+    found = []
+    for title, (value, source) in numbers.items():
+        last = LAST_EFFECTS[title][full]
+        found.append(recorded(title, value, last, CHANGE * last, source))
+    return found
+
+
 def checks(full):
     """Checks of all forces, each over all sails and states.
 
@@ -466,7 +564,7 @@ def checks(full):
     -------
     list of Check
     """
-    agreement, energies, laws, seen, states = {}, {}, {}, {}, 0
+    agreement, effects, energies, laws, seen, states = {}, {}, {}, {}, {}, 0
     for name, (options, seeds) in (FULL if full else FAST).items():
         sail = StandingSail(**options)
         laws[name] = law_difference(sail)
@@ -477,6 +575,8 @@ def checks(full):
             states += 1
             for title, error in state_differences(sail, state).items():
                 agreement.setdefault(title, []).append((error, label))
+            for title, effect in bound_effects(sail, state).items():
+                effects.setdefault(title, []).append((effect, label))
             for title, (error, asked) in energy_differences(sail, state).items():
                 energies.setdefault(title, []).append((error, label, asked))
             for branch, count in branches(sail, state).items():
@@ -489,10 +589,9 @@ def checks(full):
     for title, results in agreement.items():
         error, label = max(results)
         source = f"reference/forces.py; worst of {len(results)}: {label}"
-        if title.endswith((AT_COLLAPSED, AT_PUSHED)):
-            source += "; MODEL.md has no such bound as the plugin's"
         most = SHORTENING if title.startswith("L0") else AGREEMENT
         found.append(at_most(f"{title}: plugin - reference", error, most, source))
+    found += bound_checks(full, effects, seen, states)
     for title, results in energies.items():
         error, label, _ = max(results)
         source = (
