@@ -24,6 +24,7 @@ struct Model {
     Points positions;
     std::vector<double> masses; ///< 0: held
     std::vector<double> damping;
+    std::vector<double> drag;
     CreaseLaw crease;
 
     Model(const MeshInput& in, double ratio) : rest(restState(in)), positions(in.nodes), masses(rest.masses) {
@@ -31,7 +32,7 @@ struct Model {
             damping.push_back(dampingCoefficient(ratio, s.stiffness, 0.5 * (masses[s.a] + masses[s.b])));
     }
 
-    double estimate() const { return criticalTimeStep({rest, masses, positions, damping, crease}); }
+    double estimate() const { return criticalTimeStep({rest, masses, positions, damping, drag, crease}); }
 
     Points forces(const Points& x) const {
         Points f(x.size(), Vector3d::Zero());
@@ -95,11 +96,11 @@ struct Model {
         return c;
     }
 
-    /// The time step at which the largest eigenvalue of dt² K/M + 2 dt C/M is 4.
+    /// The time step at which the largest eigenvalue of dt² K/M + 4 dt C/M is 4.
     double denseLimit() const {
         const MatrixXd k = stiffness(), symmetric = 0.5 * (k + k.transpose()), c = dampers();
         const auto unstable = [&](double dt) {
-            const MatrixXd a = dt * dt * symmetric + 2. * dt * c;
+            const MatrixXd a = dt * dt * symmetric + 4. * dt * c;
             return Eigen::SelfAdjointEigenSolver<MatrixXd>(a, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff() > 4.;
         };
         double low = 0., high = 1e-9;
@@ -108,15 +109,13 @@ struct Model {
         return low;
     }
 
-    /// Growth of the fastest growing mode in one step of the leapfrog, velocity first.
+    /// Growth of the fastest growing mode in one step of the leapfrog, velocity first; dampers see 1.5 of the last
+    /// velocity less 0.5 of the one before.
     double growth(double dt) const {
-        const MatrixXd k = stiffness(), c = dampers(), one = MatrixXd::Identity(k.rows(), k.cols());
-        MatrixXd step(2 * k.rows(), 2 * k.rows());
-        step << one - dt * dt * k, dt * (one - dt * c), -dt * k, one - dt * c;
-        // In units in which position and velocity are alike.
-        const double unit = 1. / dt;
-        step.topRightCorner(k.rows(), k.cols()) *= unit;
-        step.bottomLeftCorner(k.rows(), k.cols()) /= unit;
+        const MatrixXd k = dt * dt * stiffness(), c = dt * dampers(), one = MatrixXd::Identity(k.rows(), k.cols());
+        const MatrixXd none = MatrixXd::Zero(k.rows(), k.cols());
+        MatrixXd step(3 * k.rows(), 3 * k.rows()); // of x, dt v and dt v of the step before
+        step << one - k, one - 1.5 * c, 0.5 * c, -k, one - 1.5 * c, 0.5 * c, none, one, none;
         return Eigen::EigenSolver<MatrixXd>(step, false).eigenvalues().cwiseAbs().maxCoeff();
     }
 
@@ -145,10 +144,10 @@ MeshInput spring() {
 }
 
 TEST(CriticalTimeStep, OfASpringIsOnePercentBelowTheClosedForm) {
-    // dt² k/m + 2 dt c/m = 4, m the reduced mass.
+    // dt² k/m + 4 dt c/m = 4, m the reduced mass.
     for (double ratio : ratios) {
         const double k = 100., reduced = 0.3 * 0.2 / 0.5, c = 2. * ratio * std::sqrt(k * 0.25);
-        const double exact = (std::sqrt(c * c + 4. * k * reduced) - c) / k;
+        const double exact = 2. * (std::sqrt(c * c + k * reduced) - c) / k;
         EXPECT_NEAR(Model(spring(), ratio).estimate() / exact, 0.99, 1e-9) << "ratio " << ratio;
     }
 }
@@ -157,6 +156,22 @@ TEST(CriticalTimeStep, OfAMassOnAFixedSpringIsTwoOverItsFrequency) {
     Model model(spring(), 0.);
     model.hold({0});
     EXPECT_NEAR(model.estimate() / (2. * std::sqrt(0.2 / 100.)), 0.99, 1e-9);
+}
+
+TEST(CriticalTimeStep, OfAMassHeldBackByDragAloneIsItsMassOverTheDragSlope) {
+    Model model(spring(), 0.);
+    model.rest.sides[0].stiffness = 0.;
+    model.drag = {0., 7.};
+    EXPECT_NEAR(model.estimate() / (0.2 / 7.), 0.99, 1e-9);
+}
+
+TEST(CriticalTimeStep, DragOfItsNodesAddsToTheDampingOfASpring) {
+    // A drag of d m on each mass damps a spring like c/m on top of its own.
+    const double rate = 13., c = 2. * 0.1 * std::sqrt(100. * 0.25), k = 100., reduced = 0.3 * 0.2 / 0.5;
+    Model model(spring(), 0.1);
+    model.drag = {rate * 0.3, rate * 0.2};
+    const double both = c + rate * reduced;
+    EXPECT_NEAR(model.estimate() / (2. * (std::sqrt(both * both + k * reduced) - both) / k), 0.99, 1e-9);
 }
 
 TEST(CriticalTimeStep, DenseLimitSeparatesStableFromUnstableLeapfrogs) {
@@ -305,10 +320,10 @@ TEST(CriticalTimeStep, IsInfiniteIfNothingCanMoveOrNothingPulls) {
     held.hold({0, 1, 2, 3, 4, 5, 6, 7, 8});
     EXPECT_EQ(held.estimate(), infinity);
     const RestState nothing;
-    EXPECT_EQ(criticalTimeStep({nothing, {}, {}, {}, {}}), infinity);
+    EXPECT_EQ(criticalTimeStep({nothing, {}, {}, {}, {}, {}}), infinity);
     const std::vector<double> masses{1., 1.};
     const Points apart{Vector3d::Zero(), Vector3d::UnitX()};
-    EXPECT_EQ(criticalTimeStep({nothing, masses, apart, {}, {}}), infinity);
+    EXPECT_EQ(criticalTimeStep({nothing, masses, apart, {}, {}, {}}), infinity);
 }
 
 } // namespace

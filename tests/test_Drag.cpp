@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 using membrane::cornerDrag;
+using membrane::cornerDragSlope;
 using shapes::Vector3d;
 
 namespace {
@@ -58,6 +59,22 @@ TEST(Drag, GrowsWithTheSquareOfSpeedAndOfSize) {
         EXPECT_LT((cornerDrag(density, scale * scale * facing, velocity) / (scale * scale) - force).norm(), 1e-14);
         EXPECT_LT((cornerDrag(density, facing, scale * velocity) / (scale * scale) - force).norm(), 1e-14);
     }
+}
+
+TEST(Drag, SlopeIsNeverAboveItsBoundAndReachesItFaceOn) {
+    shapes::Random random(3);
+    const double step = 1e-6;
+    for (int i = 0; i < 50; ++i) {
+        const Vector3d normal = random.vector(), velocity = random.vector(), way = random.vector().normalized();
+        const Vector3d change =
+            (cornerDrag(density, normal, velocity + step * way) - cornerDrag(density, normal, velocity - step * way)) /
+            (2. * step);
+        EXPECT_LE(change.norm(), (1. + 1e-6) * cornerDragSlope(density, normal, velocity));
+    }
+    const Vector3d velocity = 3. * facing.normalized(), faster = velocity * (1. + step);
+    const double slope =
+        (cornerDrag(density, facing, faster) - cornerDrag(density, facing, velocity)).norm() / (3. * step);
+    EXPECT_NEAR(slope / cornerDragSlope(density, facing, velocity), 1., 1e-5);
 }
 
 TEST(Drag, APlateThatFliesFaceOnSlowsDownAsTheClosedFormSays) {

@@ -24,6 +24,7 @@ BASES = {
     "CentrifugalField": ("FieldApplier", "GlobalEngine", "Engine"),
     "MembraneLedger": ("GlobalEngine", "Engine"),
     "MembraneTimeStepper": ("TimeStepper", "GlobalEngine", "Engine"),
+    "MembraneWatch": ("GlobalEngine", "Engine"),
 }
 SETTINGS = {
     "MembraneMat": {"thickness": 1e-5, "young": 2e9, "label": "film"},
@@ -37,6 +38,7 @@ SETTINGS = {
     "CentrifugalField": {"omega": 2.0},
     "MembraneLedger": {"gravity": Vector3(0, 0, -1), "dead": True},
     "MembraneTimeStepper": {"fraction": 0.3, "active": False},
+    "MembraneWatch": {"tolerance": 0.3, "period": 7},
 }
 NUMBERS = ("Real", "Vector3r", "vector<Real>", "vector<Vector3r>")
 

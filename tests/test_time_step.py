@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The estimate of the critical time step against dense eigenvalues, and against runs.
 
-With damping at the velocity half a step before, the leapfrog is stable while the largest
-eigenvalue of (dt2 K + 2 dt C) / M stays below 4.
+With damping at velocities extrapolated to the time of the positions, the leapfrog is stable while
+the largest eigenvalue of (dt2 K + 4 dt C) / M stays below 4.
 """
 
 import unittest
@@ -72,9 +72,9 @@ def exact_step(stiff, damped, masses):
     step, change = 2 / np.sqrt(undamped), 1.0
     while damped.any() and abs(change) > 1e-9:
         # At the largest eigenvalue's vector the condition is a quadratic equation for the step.
-        _, vectors = np.linalg.eigh(step * stiff + 2 * damped)
+        _, vectors = np.linalg.eigh(step * stiff + 4 * damped)
         k, c = (vectors[:, -1] @ matrix @ vectors[:, -1] for matrix in (stiff, damped))
-        change, step = -step, (np.sqrt(c**2 + 4 * k) - c) / k
+        change, step = -step, 2 * (np.sqrt(c**2 + k) - c) / k
         change = (change + step) / step
     return step
 
@@ -198,7 +198,8 @@ class TestRuns(TimeStepTest):
         for zeta in (0.0, 0.1):
             self.assertLess(self.growth(0.98, zeta, 3000), 30)
             self.assertGreater(self.growth(1.1, zeta, 60), 1e8)
-            self.assertGreater(self.growth(1.02, zeta, 120), 1e6)
+            # Above the limit damped modes grow, but slowly.
+            self.assertGreater(self.growth(1.02, zeta, 400 if zeta else 120), 1e6)
 
     def test_step_above_the_estimate_is_refused_unless_forced(self):
         sheet = self.make(zeta=0.02)

@@ -61,6 +61,7 @@ void MembraneForceEngine::action() {
     faults::raise(scene);
     if (preparedFor_ != scene) prepare(*scene);
     gather();
+    centreVelocities();
     if (scene->dt != checkedStep_ || scene->iter % timeStepCheckPeriod == 0) checkTimeStep();
     lastStep_ = scene->iter;
 
@@ -69,6 +70,12 @@ void MembraneForceEngine::action() {
     if (airDensity > 0.) addDrag();
     if (beta > 0. || zeta > 0. || airDensity > 0.) scatter();
 }
+
+namespace {
+
+bool held(const State& state) { return (state.blockedDOFs & State::DOF_XYZ) == State::DOF_XYZ; }
+
+} // namespace
 
 /// Looks up the bodies and computes what stays the same while it runs.
 void MembraneForceEngine::prepare(Scene& now) {
@@ -80,7 +87,7 @@ void MembraneForceEngine::prepare(Scene& now) {
         if (!(states_[i]->mass > 0.) || !std::isfinite(states_[i]->mass))
             throw std::runtime_error("Membrane: the mass " + std::to_string(states_[i]->mass) + " kg of body #" +
                                      std::to_string(membrane->bodyIds[i]) + " must be finite and > 0");
-    for (::membrane::Points* points : {&x_, &v_, &creaseForces_, &dampingForces_, &dragForces_})
+    for (::membrane::Points* points : {&x_, &v_, &u_, &creaseForces_, &dampingForces_, &dragForces_})
         points->assign(n, Vector3r::Zero());
     creasePower = dampingPower = dragPower = 0.; // of parts no longer computed
     damping_.clear();
@@ -104,6 +111,25 @@ void MembraneForceEngine::gather() {
             throw std::runtime_error("Membrane: the run diverged at t = " + std::to_string(scene->time) + " s: node " +
                                      std::to_string(i) + " (body #" + std::to_string(membrane->bodyIds[i]) +
                                      ") has a position or velocity that is not finite");
+}
+
+/// Velocities at the time of the positions: with those half a step old, damping and drag would be of first order in
+/// the step, and a spinning membrane would be under a false tension.
+void MembraneForceEngine::centreVelocities() {
+    const bool seen = seenPositions.size() == x_.size() && seenVelocities.size() == x_.size();
+    u_ = v_;
+    for (std::size_t i = 0; seen && i < x_.size(); ++i) {
+        // The velocity that moved the node to where it is: a driven one has got its next already.
+        const bool driven = held(*states_[i]);
+        const Vector3r& arrived = driven ? seenVelocities[i] : v_[i];
+        const Real rounding = 1e-15 * x_[i].norm(), moved = scene->dt * arrived.norm();
+        // Not so if someone has put it elsewhere, given it another velocity or changed the step.
+        if (!((x_[i] - seenPositions[i] - scene->dt * arrived).norm() <= 1e-9 * moved + rounding)) continue;
+        const Real share = driven ? 0.5 : 1.5;
+        u_[i] = share * v_[i] + (1. - share) * seenVelocities[i];
+    }
+    seenPositions = x_;
+    seenVelocities = v_;
 }
 
 void MembraneForceEngine::checkTimeStep() {
@@ -130,7 +156,7 @@ void MembraneForceEngine::addCreases() {
         creaseForces_[c.c] += f.c;
         creaseForces_[c.d] += f.d;
     }
-    creasePower = power(creaseForces_, v_);
+    creasePower = power(creaseForces_, u_);
 }
 
 void MembraneForceEngine::addDamping() {
@@ -141,7 +167,7 @@ void MembraneForceEngine::addDamping() {
         const Vector3r span = x_[s.b] - x_[s.a];
         const Real length = span.norm();
         if (!(length > 0.)) continue;
-        Real tension = damping_[i] * span.dot(v_[s.b] - v_[s.a]) / length;
+        Real tension = damping_[i] * span.dot(u_[s.b] - u_[s.a]) / length;
         if (s.kind == ::membrane::SideKind::cable) { // a slack cable is not damped, and damping may not make one push
             if (length <= s.restLength) continue;
             tension = std::max(tension, -::membrane::sideTension(length, s.stiffness, s.restLength, s.critical));
@@ -150,16 +176,16 @@ void MembraneForceEngine::addDamping() {
         dampingForces_[s.a] += force;
         dampingForces_[s.b] -= force;
     }
-    dampingPower = power(dampingForces_, v_);
+    dampingPower = power(dampingForces_, u_);
 }
 
 void MembraneForceEngine::addDrag() {
     for (auto& f : dragForces_) f.setZero();
     for (const Vector3i& t : membrane->triangles) {
         const Vector3r doubleArea = (x_[t[1]] - x_[t[0]]).cross(x_[t[2]] - x_[t[0]]);
-        for (int k = 0; k < 3; ++k) dragForces_[t[k]] += ::membrane::cornerDrag(airDensity, doubleArea, v_[t[k]]);
+        for (int k = 0; k < 3; ++k) dragForces_[t[k]] += ::membrane::cornerDrag(airDensity, doubleArea, u_[t[k]]);
     }
-    dragPower = power(dragForces_, v_);
+    dragPower = power(dragForces_, u_);
 }
 
 void MembraneForceEngine::scatter() const {
@@ -175,9 +201,18 @@ Real MembraneForceEngine::criticalTimeStep() {
     for (const auto& state : states_) {
         x.push_back(state->pos);
         // A node held in some directions only counts as free: that bounds the step from below.
-        masses.push_back((state->blockedDOFs & State::DOF_XYZ) == State::DOF_XYZ ? 0. : state->mass);
+        masses.push_back(held(*state) ? 0. : state->mass);
     }
-    return ::membrane::criticalTimeStep({membrane->rest(), masses, x, damping_, law()});
+    vector<Real> drag;
+    if (airDensity > 0.) {
+        drag.assign(x.size(), 0.);
+        for (const Vector3i& t : membrane->triangles) {
+            const Vector3r doubleArea = (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
+            for (int k = 0; k < 3; ++k)
+                drag[t[k]] += ::membrane::cornerDragSlope(airDensity, doubleArea, states_[t[k]]->vel);
+        }
+    }
+    return ::membrane::criticalTimeStep({membrane->rest(), masses, x, damping_, drag, law()});
 }
 
 Real MembraneForceEngine::creaseEnergy(const ::membrane::Points& x) const {

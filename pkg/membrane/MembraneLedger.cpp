@@ -32,11 +32,17 @@ void MembraneLedger::action() {
         throw std::runtime_error("MembraneLedger: its MembraneForceEngine must run in the same step, before it");
 
     // Elastic forces once more, so that what other engines put on the nodes is known by difference.
+    const auto& sides = membrane.rest().sides;
     ::membrane::Points elasticForces(x.size(), Vector3r::Zero());
     elastic = 0.;
-    for (const ::membrane::Side& s : membrane.rest().sides) {
+    if (!started) lastLengths.assign(sides.size(), 0.);
+    if (lastLengths.size() != sides.size()) throw std::runtime_error("MembraneLedger: forces has another membrane now");
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+        const ::membrane::Side& s = sides[i];
         const Vector3r span = x[s.b] - x[s.a];
         const Real length = span.norm();
+        if (started) kinkError += ::membrane::kinkEnergy(lastLengths[i], length, s.stiffness, s.restLength, s.critical);
+        lastLengths[i] = length;
         elastic += ::membrane::sideEnergy(length, s.stiffness, s.restLength, s.critical);
         if (!(length > 0.)) continue;
         const Vector3r force = ::membrane::sideTension(length, s.stiffness, s.restLength, s.critical) / length * span;
@@ -80,6 +86,7 @@ void MembraneLedger::action() {
 
     if (!started) {
         initial = total();
+        initialCrease = crease();
         initialAngularMomentum = angularMomentum;
         started = true;
     } else {

@@ -9,7 +9,9 @@ class MembraneLedger : public GlobalEngine {
 public:
     void action() override;
     Real balance() const;
+    Real unexplained() const { return balance() - kinkError; }
     Real crease() const;
+    Real creaseDefect() const { return crease() - initialCrease + creaseWork; }
     Real total() const { return kinetic + elastic + potential; }
 
     // clang-format off
@@ -17,7 +19,8 @@ public:
         "Energies of a :yref:`Membrane` and the work done on it, at the time of this step's forces. The leapfrog's velocities v-, v+ lie half a "
         "step before and after; with m v- v+ / 2 for kinetic energy, and the mean of two steps' forces times the velocity between them for work, "
         "energy is conserved to the last digit in a linear system at any time step. Put it right after NewtonIntegrator, and set its damping to 0. "
-        "Blocked directions of a node count as driven; a node with all translations blocked turns about the z axis with its angVel.",
+        "Blocked directions of a node count as driven; a node with all translations blocked turns about the z axis with its angVel. Where a "
+        "side buckles or becomes taut within a step, the mean force misses a part of its energy: kinkError, nearly all of the balance.",
         ((shared_ptr<MembraneForceEngine>, forces, , , "The engine of the crease, damping and drag forces."))
         ((Vector3r, gravity, Vector3r::Zero(), , "NewtonIntegrator's gravity [m/s²]."))
         ((bool, started, false, Attr::readonly, "Whether the first step was seen."))
@@ -26,21 +29,27 @@ public:
         ((Real, elastic, 0., Attr::readonly, "Strain energy of all sides [J]."))
         ((Real, potential, 0., Attr::readonly, "Potential energy of gravity of the free nodes [J], 0 at the origin."))
         ((Real, initial, 0., Attr::readonly, "kinetic + elastic + potential at the first step [J]."))
+        ((Real, initialCrease, 0., Attr::readonly, "crease at the first step [J]."))
         ((Real, creaseWork, 0., Attr::readonly, "Work of the crease forces [J]."))
         ((Real, dampingWork, 0., Attr::readonly, "Work of the damping forces [J], <= 0."))
         ((Real, dragWork, 0., Attr::readonly, "Work of the air drag [J], <= 0."))
         ((Real, drivenWork, 0., Attr::readonly, "Work that driven nodes do on the membrane [J]: the spool through the tethers' ends."))
         ((Real, contactWork, 0., Attr::readonly, "Work of all other forces on free nodes [J]: contact of the tethers with the spool."))
+        ((Real, kinkError, 0., Attr::readonly, "Energy [J] that sides gained beyond the work of their mean forces, where they buckled or became taut within a step: the integrator's error."))
         ((Real, angularMomentum, 0., Attr::readonly, "Angular momentum of the free nodes about z [N m s]."))
         ((Real, angularImpulse, 0., Attr::readonly, "Integral of the torque about z of all forces on the free nodes [N m s]."))
         ((Real, initialAngularMomentum, 0., Attr::readonly, "Angular momentum about z at the first step [N m s]."))
         ((vector<Real>, lastPowers, , (Attr::readonly | Attr::hidden), "Powers [W] of crease, damping, drag, driven nodes, others at the velocities after the last step."))
+        ((vector<Real>, lastLengths, , (Attr::readonly | Attr::hidden), "Lengths of the sides [m] in the last step."))
         ((Real, lastTorque, 0., (Attr::readonly | Attr::hidden), "Torque about z [N m] in the last step."))
         ,
         ,
         .add_property("crease", &MembraneLedger::crease, "Energy stored in the creases [J]; with the law 'paper' and unequal heights only nearly minus creaseWork.")
+        .add_property("creaseDefect", &MembraneLedger::creaseDefect, "crease - initialCrease + creaseWork [J]: what creases gave beyond their energy. "
+            "The law 'paper' gives and takes where heights are unequal; an angle that jumps through its branch cut does too.")
         .add_property("total", &MembraneLedger::total, "kinetic + elastic + potential [J].")
         .add_property("balance", &MembraneLedger::balance, "total - initial - all works [J]: 0 but for the error of the time step.")
+        .add_property("unexplained", &MembraneLedger::unexplained, "balance - kinkError [J]: the rest of the time step's error, and of the book-keeping.")
     );
     // clang-format on
 };

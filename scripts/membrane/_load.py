@@ -19,6 +19,7 @@ CLASSES = (
     "CentrifugalField",
     "MembraneLedger",
     "MembraneTimeStepper",
+    "MembraneWatch",
 )
 
 

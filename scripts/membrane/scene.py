@@ -26,6 +26,8 @@ class MembraneScene:
     newton : NewtonIntegrator
     ledger : MembraneLedger
         Dead during spin-up.
+    watch : MembraneWatch or None
+        Stops a run that goes wrong; rests while the ledger is dead.
     driven : list of int
         Ids of the bodies that turn with the spool.
     """
@@ -36,6 +38,7 @@ class MembraneScene:
     rotation: object
     newton: object
     ledger: object
+    watch: object = None
     driven: list = field(default_factory=list)
 
     def positions(self):
@@ -128,6 +131,7 @@ def set_engines(
     zeta=0.0,
     air_density=0.0,
     force_time_step=False,
+    energy_tolerance=0.1,
 ):
     """Set O.engines to those that a membrane needs; each that a scene does without is left out.
 
@@ -144,6 +148,8 @@ def set_engines(
         Attributes of MembraneForceEngine.
     force_time_step : bool
         Run even above the critical time step.
+    energy_tolerance : float or None
+        Energy from nowhere, over all energy, that stops a run [-]; None: no MembraneWatch.
 
     Returns
     -------
@@ -197,7 +203,13 @@ def set_engines(
         newton,
         ledger,
     ]
-    return MembraneScene(membrane, forces, centrifugal, rotation, newton, ledger, list(driven))
+    watch = None
+    if energy_tolerance is not None:
+        watch = _plugin["MembraneWatch"](ledger=ledger, tolerance=energy_tolerance)
+        scene.engines = [*scene.engines, watch]
+    return MembraneScene(
+        membrane, forces, centrifugal, rotation, newton, ledger, watch, list(driven)
+    )
 
 
 def advance(steps):
@@ -276,8 +288,28 @@ def spin_up(sail, omega, *, tolerance=1e-6, damping=0.3, batch=2000, max_time=5.
 
 
 def release(sail, omega, held):
-    """Go over to the inertial frame and let the `held` nodes go (MODEL, folding step 4)."""
-    sail.field.dead, sail.rotation.dead, sail.ledger.dead = True, False, False
-    sail.newton.damping = 0
+    """Go over to the inertial frame and let the `held` nodes go (MODEL, folding step 4).
+
+    At the release v = omega x r everywhere. The leapfrog's velocities lie half a step before, and
+    follow from the accelerations of the nodes once they are free: v - a dt / 2.
+    """
+    sail.field.dead, sail.newton.damping = True, 0
     sail.hold(held, False)
-    set_spin(sail, omega)
+    scene = yade.Omega()
+    states = [scene.bodies[i].state for i in sail.membrane.bodyIds]
+    for state in states:
+        x, y, _ = state.pos
+        state.vel = (-omega * y, omega * x, 0.0)
+    sail.forces.seenPositions = []
+    for engine in (sail.rotation, sail.newton, sail.ledger):
+        engine.dead = True
+    scene.step()  # only the forces
+    for engine in (sail.rotation, sail.newton, sail.ledger):
+        engine.dead = False
+    sail.forces.seenPositions = []
+    gravity = np.array(sail.newton.gravity)
+    for i, state in zip(sail.membrane.bodyIds, states):
+        if set("xyz") <= set(state.blockedDOFs):
+            continue
+        acceleration = np.array(scene.forces.f(i, True)) / state.mass + gravity
+        state.vel = (np.array(state.vel) - 0.5 * scene.dt * acceleration).tolist()

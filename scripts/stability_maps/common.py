@@ -36,8 +36,9 @@ class Model:
         O.reset()
         self.rest = np.array(nodes, dtype=float)
         self.net = scene.add_membrane(self.rest, triangles, **options)
-        built = scene.set_engines(self.net, force_time_step=True, gravity=gravity, **(engine or {}))
-        self.forces, self.ledger = built.forces, built.ledger
+        settings = {"force_time_step": True, "energy_tolerance": None, **(engine or {})}
+        built = scene.set_engines(self.net, gravity=gravity, **settings)
+        self.forces, self.ledger, self.watch = built.forces, built.ledger, built.watch
         self.ledger.dead = True
         self.states = [O.bodies[i].state for i in self.net.bodyIds]
         self.masses = np.array(self.net.masses)

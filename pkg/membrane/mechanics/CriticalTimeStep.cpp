@@ -8,7 +8,7 @@
 namespace membrane {
 namespace {
 
-/// y += dt² K x + 2 dt C x for one side.
+/// y += dt² K x + 4 dt C x for one side.
 struct TautSide {
     int a, b;
     Eigen::Vector3d direction;
@@ -129,10 +129,14 @@ double criticalTimeStep(const TimeStepInput& in) {
             for (int k = 0; k < 3; ++k) kx[f.node[k]] += f.stiffness * f.weight[k] * stretch;
             stiff += f.stiffness * stretch.squaredNorm();
         }
-        if (!(stiff > 0.)) return std::numeric_limits<double>::infinity();
-        // dt² stiff + 2 dt damped = 4
-        step = (std::sqrt(damped * damped + 4. * stiff) - damped) / stiff;
-        for (std::size_t i = 0; i < n; ++i) x[i] = scale[i] * (step * kx[i] + 2. * cx[i]);
+        for (std::size_t i = 0; i < in.drag.size(); ++i) {
+            cx[i] += in.drag[i] * x[i];
+            damped += in.drag[i] * x[i].squaredNorm();
+        }
+        if (!(stiff > 0. || damped > 0.)) return std::numeric_limits<double>::infinity();
+        // dt² stiff + 4 dt damped = 4
+        step = 2. / (std::sqrt(damped * damped + stiff) + damped);
+        for (std::size_t i = 0; i < n; ++i) x[i] = scale[i] * (step * kx[i] + 4. * cx[i]);
     }
     return 0.99 * step;
 }

@@ -14,4 +14,9 @@ inline Eigen::Vector3d cornerDrag(double airDensity, const Eigen::Vector3d& doub
     return -(airDensity / 12.) * std::abs(doubleArea.dot(velocity)) * velocity;
 }
 
+/// Bound [N s/m] of the slope of cornerDrag() by the velocity, in any direction.
+inline double cornerDragSlope(double airDensity, const Eigen::Vector3d& doubleArea, const Eigen::Vector3d& velocity) {
+    return (airDensity / 12.) * (std::abs(doubleArea.dot(velocity)) + doubleArea.norm() * velocity.norm());
+}
+
 } // namespace membrane

@@ -24,4 +24,15 @@ inline double sideEnergy(double length, double stiffness, double restLength, dou
     return stiffness * stretch * (0.5 * stretch + std::min(0., length - critical));
 }
 
+/// What the energy [J] of a side grows by beyond the mean of its tensions at the ends of a step times its change of
+/// length. 0 unless the side buckles or becomes taut in between: elsewhere the tension is a straight line.
+/// \param before, after length at the ends of the step [m]
+inline double kinkEnergy(double before, double after, double stiffness, double restLength, double critical) {
+    if ((before < critical) == (after < critical)) return 0.;
+    const double mean = 0.5 * (sideTension(before, stiffness, restLength, critical) +
+                               sideTension(after, stiffness, restLength, critical));
+    return sideEnergy(after, stiffness, restLength, critical) - sideEnergy(before, stiffness, restLength, critical) -
+           mean * (after - before);
+}
+
 } // namespace membrane

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "MembraneWatch.hpp"
+#include "mechanics/SideForce.hpp"
+#include <algorithm>
+#include <cmath>
+#include <core/BodyContainer.hpp>
+#include <core/Scene.hpp>
+#include <sstream>
+
+namespace yade {
+
+YADE_PLUGIN((MembraneWatch));
+
+namespace {
+
+enum Part { sidesPart, creasesPart, dampingPart, dragPart, parts };
+const char* const partNames[] = {"the sides", "the creases", "damping", "air drag"};
+
+/// Strain [-] of all sides whose energy counts as none: rounding must not stop a membrane at rest.
+constexpr Real noStrain = 1e-9;
+
+std::string pairText(const Membrane& membrane, int a, int b) {
+    return std::to_string(a) + "-" + std::to_string(b) + " (bodies #" + std::to_string(membrane.bodyIds[a]) + " and #" +
+           std::to_string(membrane.bodyIds[b]) + ")";
+}
+
+} // namespace
+
+void MembraneWatch::postLoad(MembraneWatch&) {
+    if (!(tolerance > 0.))
+        throw std::invalid_argument("MembraneWatch: tolerance = " + std::to_string(tolerance) + " must be > 0");
+    if (period <= 0) throw std::invalid_argument("MembraneWatch: period = " + std::to_string(period) + " must be > 0");
+    floor_ = 0.;
+}
+
+void MembraneWatch::action() {
+    if (!ledger || !ledger->forces) throw std::runtime_error("MembraneWatch: ledger is not set, or has no forces");
+    if (ledger->dead) return;
+    if (floor_ == 0.)
+        for (const ::membrane::Side& s : ledger->forces->membrane->rest().sides)
+            floor_ += 0.5 * std::abs(s.stiffness) * std::pow(noStrain * s.restLength, 2);
+
+    const bool look = looked_ < 0 || scene->iter - looked_ >= period;
+    const Real gave[parts] = {ledger->balance(), look ? ledger->creaseDefect() : 0., ledger->dampingWork,
+                              ledger->dragWork};
+    if (lowest.empty()) lowest.assign(gave, gave + parts);
+    peak = std::max(peak, ledger->kinetic + ledger->elastic + (look ? ledger->crease() : 0.));
+    const Real most = tolerance * (allEnergy() + floor_);
+    Real gain = 0.;
+    int worst = sidesPart;
+    for (int part = 0; part < parts; ++part) {
+        if (part == creasesPart && !look) continue;
+        lowest[part] = std::min(lowest[part], gave[part]);
+        const Real risen = gave[part] - lowest[part];
+        if (!(risen <= gain)) gain = risen, worst = part;
+    }
+    if (!(gain <= most)) stop(worst, gain);
+    if (!look) return;
+    looked_ = scene->iter;
+    if (gain <= 0.5 * most) keep();
+}
+
+Real MembraneWatch::allEnergy() const {
+    return peak + std::abs(ledger->dampingWork) + std::abs(ledger->dragWork);
+}
+
+void MembraneWatch::keep() {
+    std::swap(newer_, older_);
+    newer_.bodies.clear();
+    for (const auto& body : *scene->bodies)
+        newer_.bodies.push_back({body->id, body->state->pos, body->state->vel, body->state->angVel, body->state->ori});
+    newer_.ledger = shared_ptr<MembraneLedger>(new MembraneLedger(*ledger));
+    newer_.time = scene->time + scene->dt; // the integrator has moved the bodies already
+}
+
+Real MembraneWatch::restore() {
+    const Kept& kept = older_.ledger ? older_ : newer_;
+    if (!kept.ledger) throw std::runtime_error("MembraneWatch: no state was kept yet");
+    for (const BodyState& was : kept.bodies) {
+        if (!scene->bodies->exists(was.id)) continue;
+        State& state = *(*scene->bodies)[was.id]->state;
+        state.pos = was.pos;
+        state.ori = was.ori;
+        state.vel = was.vel;
+        state.angVel = was.angVel;
+    }
+    *ledger = *kept.ledger;
+    scene->time = kept.time;
+    scene->forces.reset(scene->iter);
+    lowest.clear();
+    looked_ = -1;
+    return kept.time;
+}
+
+void MembraneWatch::stop(int part, Real gain) const {
+    MembraneForceEngine& forces = *ledger->forces;
+    const Membrane& membrane = *forces.membrane;
+    const ::membrane::Points &x = forces.positions(), &v = forces.velocities();
+    const auto before = [&](int node) -> Vector3r { return x[node] - scene->dt * v[node]; };
+
+    // Whoever gave most in the last step.
+    std::string where;
+    Real most = -1.;
+    if (part == creasesPart) {
+        const ::membrane::CreaseLaw law = forces.law();
+        for (const ::membrane::Crease& c : membrane.rest().creases) {
+            const Real energy = ::membrane::creaseEnergy(
+                c.rest, law, ::membrane::creaseState(c.rest, x[c.a], x[c.b], x[c.c], x[c.d]).theta);
+            if (!(energy <= most)) most = energy, where = "crease " + pairText(membrane, c.a, c.b);
+        }
+    } else if (part == dragPart) {
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            const Real power = forces.dragForces()[i].norm() * v[i].norm();
+            if (!(power <= most)) most = power, where = "node " + std::to_string(i);
+        }
+    } else {
+        for (const ::membrane::Side& s : membrane.rest().sides) {
+            const Vector3r now = x[s.b] - x[s.a], then = before(s.b) - before(s.a);
+            const Real change = now.norm() - then.norm();
+            const Real mean = 0.5 * (::membrane::sideTension(now.norm(), s.stiffness, s.restLength, s.critical) +
+                                     ::membrane::sideTension(then.norm(), s.stiffness, s.restLength, s.critical));
+            const Real weight = part == dampingPart ? s.stiffness * change * change : std::abs(mean * change);
+            if (!(weight <= most)) most = weight, where = "side " + pairText(membrane, s.a, s.b);
+        }
+    }
+    std::size_t fastest = 0;
+    for (std::size_t i = 0; i < v.size(); ++i)
+        if (!(v[i].squaredNorm() <= v[fastest].squaredNorm())) fastest = i;
+
+    std::ostringstream message;
+    message << "Membrane: the run went wrong at t = " << scene->time << " s, step " << scene->iter << ": "
+            << partNames[part] << " gave " << gain << " J from nowhere, more than " << tolerance << " of all energy, "
+            << allEnergy() << " J; most of it at " << where << "; node " << fastest << " is the fastest, "
+            << v[fastest].norm() << " m/s. O.dt = " << scene->dt << " s, the critical time step is "
+            << forces.criticalTimeStep() << " s: try a shorter one";
+    throw std::runtime_error(message.str());
+}
+
+} // namespace yade

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+#include "MembraneLedger.hpp"
+#include <core/GlobalEngine.hpp>
+
+namespace yade {
+
+class MembraneWatch : public GlobalEngine {
+public:
+    void action() override;
+    void postLoad(MembraneWatch&);
+    Real restore();
+
+    // clang-format off
+    YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MembraneWatch, GlobalEngine,
+        "Stops a run that goes wrong. A time step too long, for the mesh or for sides that snap between taut and buckled, shows as energy "
+        "from nowhere long before numbers overflow, and may never overflow at all. In every step the watch looks at what sides, damping and drag have "
+        "given since their lowest, and in every `period` steps also at the creases; where that is more than `tolerance` of all energy it raises "
+        "RuntimeError, with the part, the side or crease and the node to blame. :yref:`restore` then brings back the last good state. "
+        "Put it after :yref:`MembraneLedger`; it rests while that is dead.",
+        ((shared_ptr<MembraneLedger>, ledger, , Attr::triggerPostLoad, "The ledger that is watched."))
+        ((Real, tolerance, 0.1, Attr::triggerPostLoad, "Energy from nowhere that stops the run, over all energy: the largest of kinetic, strain and crease energy so far, and what was lost by damping and drag [-], > 0."))
+        ((int, period, 100, Attr::triggerPostLoad, "Steps between two states that are kept to be restored, and between two looks at the creases, > 0."))
+        ((vector<Real>, lowest, , (Attr::readonly | Attr::hidden), "Lowest yet of what sides, creases, damping and drag gave [J]."))
+        ((Real, peak, 0., (Attr::readonly | Attr::hidden), "Largest kinetic, strain and crease energy yet [J]."))
+        ,
+        ,
+        .def("restore", &MembraneWatch::restore, "Put all bodies and the ledger back to the last good state, at most 2 `period` steps before the last step "
+            "unless energy had been growing for longer; returns its time [s]. Interactions other than the membrane's are not put back.\n\n"
+            ":raises RuntimeError: if no state was kept yet")
+    );
+    // clang-format on
+
+private:
+    struct BodyState {
+        Body::id_t id;
+        Vector3r pos, vel, angVel;
+        Quaternionr ori;
+    };
+    /// A state to return to.
+    struct Kept {
+        vector<BodyState> bodies;
+        shared_ptr<MembraneLedger> ledger;
+        Real time = 0.;
+    };
+    Kept newer_, older_;
+    Real floor_ = 0.; ///< energy [J] that counts as none
+    long looked_ = -1;
+
+    void keep();
+    Real allEnergy() const;
+    [[noreturn]] void stop(int part, Real gain) const;
+};
+REGISTER_SERIALIZABLE(MembraneWatch);
+
+} // namespace yade
