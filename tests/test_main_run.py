@@ -71,6 +71,8 @@ class TestMainRun(unittest.TestCase):
         work = np.abs(self.history["spool_work"]).max()
         self.assertGreater(work, 1e-3)
         self.assertLess(np.abs(self.history["energy_balance"]).max(), 0.01 * work)
+        rest = self.history["energy_balance"] - self.history["kink_error"]
+        self.assertLess(np.abs(rest).max(), 1e-6 * work)
 
     def test_balance_is_energies_less_works(self):
         h = self.history

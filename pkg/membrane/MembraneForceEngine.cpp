@@ -73,7 +73,9 @@ void MembraneForceEngine::action() {
 
 namespace {
 
-bool held(const State& state) { return (state.blockedDOFs & State::DOF_XYZ) == State::DOF_XYZ; }
+bool held(const State& state) {
+    return (state.blockedDOFs & State::DOF_XYZ) == State::DOF_XYZ;
+}
 
 } // namespace
 

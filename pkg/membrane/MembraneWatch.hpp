@@ -17,7 +17,8 @@ public:
         "from nowhere long before numbers overflow, and may never overflow at all. In every step the watch looks at what sides, damping and drag have "
         "given since their lowest, and in every `period` steps also at the creases; where that is more than `tolerance` of all energy it raises "
         "RuntimeError, with the part, the side or crease and the node to blame. :yref:`restore` then brings back the last good state. "
-        "Put it after :yref:`MembraneLedger`; it rests while that is dead.",
+        "Put it after :yref:`MembraneLedger`; it rests while that is dead. Nodes that are given other velocities by hand are energy from nowhere, too: "
+        "then start a new ledger and watch.",
         ((shared_ptr<MembraneLedger>, ledger, , Attr::triggerPostLoad, "The ledger that is watched."))
         ((Real, tolerance, 0.1, Attr::triggerPostLoad, "Energy from nowhere that stops the run, over all energy: the largest of kinetic, strain and crease energy so far, and what was lost by damping and drag [-], > 0."))
         ((int, period, 100, Attr::triggerPostLoad, "Steps between two states that are kept to be restored, and between two looks at the creases, > 0."))

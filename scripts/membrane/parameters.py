@@ -94,6 +94,9 @@ class SailParameters:
     spin_up_tolerance: float = _parameter(
         1e-6, "-", RUN, "residual energy that ends the spin-up", above=True
     )
+    energy_tolerance: float = _parameter(
+        0.1, "-", RUN, "energy from nowhere, over all energy, that stops the run", above=True
+    )
     force_time_step: bool = _parameter(False, "-", RUN, "run even above the critical time step")
 
     def __post_init__(self):

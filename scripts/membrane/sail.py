@@ -21,6 +21,7 @@ from .spool import add_spool
 
 # The spin-up may take longer steps than the run: no accuracy is asked of it.
 SPIN_UP_STEP = 0.7
+LAST_GOOD = "last_good.yade.gz"
 
 
 def build(p):
@@ -73,6 +74,7 @@ def build(p):
         zeta=p.zeta,
         air_density=p.air_density,
         force_time_step=p.force_time_step,
+        energy_tolerance=p.energy_tolerance,
     )
     sail.hold(mesh.anchors)
     sail.hold(mesh.guide_nodes.ravel())
@@ -149,8 +151,12 @@ def deploy(p, folder, pictures=True):
     equilibrium = spin_up(sail, p)
     clock.append(time.monotonic())
     recorder = Recorder(folder, mesh, sail, p.omega)
-    run(mesh, sail, p, recorder)
-    recorder.close()
+    try:
+        run(mesh, sail, p, recorder)
+    except RuntimeError as error:
+        raise RuntimeError(f"{error}. {save_last_good(sail, folder)}") from error
+    finally:
+        recorder.close()
     clock.append(time.monotonic())
     history = recorder.columns()
     if pictures:
@@ -183,10 +189,24 @@ def deploy(p, folder, pictures=True):
             **measures.swing(history["time"], history["phase_difference"]),
             "largest_spool_work": float(np.abs(history["spool_work"]).max()),
             "largest_energy_imbalance": float(np.abs(history["energy_balance"]).max()),
+            "largest_unexplained_energy": float(
+                np.abs(history["energy_balance"] - history["kink_error"]).max()
+            ),
         },
     }
     write_json(folder / "summary.json", summary)
     return summary
+
+
+def save_last_good(sail, folder):
+    """Put the sail back to the last good state and save it; returns a sentence about it."""
+    try:
+        time = sail.watch.restore()
+    except RuntimeError as error:
+        return f"No good state could be saved ({error})"
+    path = Path(folder) / LAST_GOOD
+    yade_classes.Omega().save(str(path), quiet=True)
+    return f"The last good state, of t = {time:.6g} s on YADE's clock, is in {path}"
 
 
 def draw(mesh, recorder, history, folder):

@@ -144,7 +144,7 @@ def claims(kind, values, spread, unit):
 def known_swing():
     """Check of `swing` on a curve whose extremes are known."""
     times = np.linspace(0, 2, 2001)
-    run = Deployment(times, *[None] * 7)
+    run = Deployment(times, *[None] * 8)
     run.phase = -np.radians(30) * np.sin(np.pi * times)
     lag, half = swing(run)
     exact = "-30 deg sin(pi t)"
