@@ -119,7 +119,7 @@ def cases(quick):
     found += [{"state": "overlapping", "beta": b, "law": "conservative"} for b in (3e4, 3e6)]
     found += [{"segments": n} for n in (2, 3, 6, 8)]
     found += [{"tip": m, "zeta": z} for m in (0.0, 3.6e-3) for z in (0.0, 0.02, 1.0)]
-    found += [{"refine": 2}, {"refine": 3}]
+    found += [{"refine": n} for n in (2, 3, 4)]
     return found
 
 
