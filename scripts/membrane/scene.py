@@ -281,6 +281,11 @@ def spin_up(sail, omega, *, tolerance=1e-6, damping=0.3, batch=2000, max_time=5.
         advance(batch)
         steps += batch
         residual = residual_energy(sail, omega)
+        if not residual < 10:
+            raise RuntimeError(
+                f"spin-up went wrong: after {steps} steps the nodes have {residual:.3g} times the "
+                f"energy of the spin; try a step shorter than O.dt = {scene.dt:.3g} s"
+            )
         calm = calm + 1 if residual < tolerance else 0
         if on_batch:
             on_batch(steps * scene.dt, residual)

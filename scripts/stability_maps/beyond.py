@@ -3,7 +3,8 @@
 
 The flat sail's film with a tiny perturbation runs at steps above the estimate with forceTimeStep.
 Counted are the steps from the start to where the kinetic energy is a million times the first, and
-from there to where the run is stopped by an exception. Predicted: an undamped mode above its
+from there to where the run is stopped by an exception, without a watch: numbers overflow. The same runs
+are then watched by a MembraneWatch, and the steps to its stop are counted. Predicted: an undamped mode above its
 limit grows by a factor a step, b + sqrt(b² - 1) with b = 2 (dt / limit)² - 1, until numbers
 overflow at 1e308.
 """
@@ -22,8 +23,11 @@ HEADER = (
     "predicted steps to the stop, taut",
     "largest velocity seen [m/s]",
     "message",
+    "steps to the stop by the watch",
+    "message of the watch",
 )
 SPEED = 1e-6  # m/s
+TOLERANCE = 0.1  # of the watch, its default
 
 
 def predicted(share, limit=1.01):
@@ -48,10 +52,12 @@ def refusal(model, step):
 def blow_up(share, zeta, most):
     """Row of a run at `share` of the estimate, of at most `most` steps."""
 
-    def build():
+    def build(tolerance=None):
         mesh = sail_mesh()
         size = mesh.film_size
-        made = Model(mesh.nodes[:size], mesh.triangles, engine={"zeta": zeta})
+        engine = {"zeta": zeta, "energy_tolerance": tolerance}
+        made = Model(mesh.nodes[:size], mesh.triangles, engine=engine)
+        made.ledger.dead = tolerance is None
         rng = np.random.default_rng(4)
         made.place(made.rest, SPEED * rng.normal(size=made.rest.shape))
         return made
@@ -73,6 +79,7 @@ def blow_up(share, zeta, most):
                     grown = done
     except RuntimeError as error:
         message = str(error)
+    watched, said = watched_stop(build(TOLERANCE), share * estimate, most)
     after = done - grown if message and grown is not None else -1
     return [
         share,
@@ -82,7 +89,20 @@ def blow_up(share, zeta, most):
         predicted(share) if share > 1.01 else np.inf,
         fastest,
         message or "not stopped",
+        watched,
+        said,
     ], refused
+
+
+def watched_stop(model, step, most):
+    """Steps to the stop of a watched run of at most `most` steps, and its message; -1 if none."""
+    O.dt = step
+    for done in range(1, most + 1):
+        try:
+            O.step()
+        except RuntimeError as error:
+            return done, str(error)
+    return -1, "not stopped"
 
 
 def run(quick):
@@ -101,7 +121,8 @@ def run(quick):
         f'refused unless forced: {sum(r[1] for r in rows)} of {len(rows)}, with "{refused}"; '
         f"forced, steps "
         f"from a millionfold energy to the stop: {stops}; largest velocity before it "
-        f"{max(r[5] for r in rows):.1e} m/s"
+        f"{max(r[5] for r in rows):.1e} m/s; with a watch, steps to the stop: "
+        + ", ".join(f"{r[7]} at {r[0]:g}" if r[7] >= 0 else f"none at {r[0]:g}" for r in rows)
     )
 
 
@@ -112,6 +133,8 @@ def draw(rows, path):
     for column, name in ((2, "start to a million times the energy"), (3, "from there to the stop")):
         mine = [r for r in rows if r[column] >= 0]
         axis.semilogy([r[0] for r in mine], [r[column] for r in mine], "o-", label=name)
+    mine = [r for r in rows if r[7] >= 0]
+    axis.semilogy([r[0] for r in mine], [r[7] for r in mine], "s-", label="to the watch's stop")
     mine = [r for r in rows if np.isfinite(r[4])]
     axis.semilogy(
         [r[0] for r in mine],

@@ -169,7 +169,9 @@ class CreaseForces:
             on_apex.append(size[:, None] * frame["normal_" + apex])
             self.largest = max(self.largest, float(np.abs(size).max()))
             self.lowest = min(self.lowest, float((height / self.rest["height_" + apex]).min()))
-        nodal = reference.crease_balance(x, self.creases, frame, *on_apex)
+        nodal = reference.crease_balance(
+            x, self.creases, frame, self.rest, *on_apex, reference.COLLAPSED
+        )
         for i, force in zip(self.ids, nodal.tolist()):
             O.forces.addF(i, force)
         self.calls += 1
@@ -198,10 +200,11 @@ def sail_run(case, lengths, seconds, row=2e-3):
     """
     beta, zeta, refine = case
     start = SailParameters(refine=refine)
-    p = replace(start, beta=beta if lengths == "plugin" else 0.0, zeta=zeta)
+    p = replace(start, beta=beta, zeta=zeta)
     mesh, built = begin(p, equilibrium(start), ledger=False)
     creases = CreaseForces(mesh, built, beta, lengths)
     if lengths != "plugin":
+        built.forces.beta = 0.0
         __main__.put_crease_forces = creases  # PyRunner looks there
         runner = yade.PyRunner(command="put_crease_forces()", iterPeriod=1, initRun=True)
         engines = O.engines
