@@ -3,10 +3,10 @@
 
 The flat sail's film with a tiny perturbation runs at steps above the estimate with forceTimeStep.
 Counted are the steps from the start to where the kinetic energy is a million times the first, and
-from there to where the run is stopped by an exception, without a watch: numbers overflow. The same runs
-are then watched by a MembraneWatch, and the steps to its stop are counted. Predicted: an undamped mode above its
-limit grows by a factor a step, b + sqrt(b² - 1) with b = 2 (dt / limit)² - 1, until numbers
-overflow at 1e308.
+from there to where the run is stopped by an exception, without a watch: numbers overflow. The same
+runs are then watched by a MembraneWatch, and the steps to its stop are counted. Predicted: an
+undamped mode above its limit grows by a factor a step, b + sqrt(b² - 1) with b = 2 (dt / limit)² -
+1, until numbers overflow at 1e308.
 """
 
 import numpy as np
