@@ -30,6 +30,26 @@ TEST(SideForce, CriticalLengthIsNeverNegative) {
     EXPECT_EQ(criticalLength(1., 1e9, 1.), 0.);
 }
 
+TEST(SideForce, KinkEnergyIsWhatTheMeanTensionMissesOfTheWorkBetween) {
+    for (double before : {0.9, 1.4, 1.6, 2.4}) {
+        for (double after : {1.1, 1.45, 1.7, 2.6}) {
+            const int parts = 100000; // midpoint rule for the work on the way
+            double work = 0.;
+            for (int i = 0; i < parts; ++i)
+                work += sideTension(before + (i + 0.5) / parts * (after - before), stiffness, rest, critical) *
+                        (after - before) / parts;
+            const double mean =
+                0.5 * (sideTension(before, stiffness, rest, critical) + sideTension(after, stiffness, rest, critical));
+            const double missed = work - mean * (after - before);
+            EXPECT_NEAR(kinkEnergy(before, after, stiffness, rest, critical), missed, 1e-9) << before << " " << after;
+            if ((before < critical) == (after < critical))
+                EXPECT_EQ(kinkEnergy(before, after, stiffness, rest, critical), 0.);
+            else
+                EXPECT_GT(std::abs(missed), 1e-3);
+        }
+    }
+}
+
 TEST(SideForce, CableBearsNoCompression) {
     const double slack = criticalLength(rest, 0., 1e-3);
     EXPECT_EQ(slack, rest);

@@ -99,6 +99,20 @@ class TestDrivenBodies(SceneTest):
         with self.assertRaisesRegex(RuntimeError, "no equilibrium in 0.001 s: residual"):
             scene.spin_up(self.sail, self.omega, tolerance=1e-30, batch=100, max_time=1e-3)
 
+    def test_released_nodes_spin_at_the_release_whatever_pulls_at_them(self):
+        free = O.bodies[self.sail.membrane.bodyIds[1]].state
+        free.pos = (0.0401, 0.001, 0.0005)  # taut
+        scene.release(self.sail, self.omega, [])
+        self.assertEqual(tuple(free.pos), (0.0401, 0.001, 0.0005))
+        before = np.array(free.vel)
+        scene.advance(1)
+        middle = 0.5 * (before + np.array(free.vel))
+        spin = self.omega * np.array([-0.001, 0.0401, 0])
+        gained = np.linalg.norm(np.array(free.vel) - before)
+        self.assertGreater(gained, 0.01)
+        # But for the damping, of which the first step sees a velocity half a step old.
+        np.testing.assert_allclose(middle, spin, rtol=0, atol=0.02 * gained)
+
     def test_release_leaves_no_field_and_starts_the_spool_and_the_ledger(self):
         scene.spin_up(self.sail, self.omega, tolerance=0.5, batch=10)
         self.assertEqual(

@@ -33,6 +33,16 @@ Real power(const ::membrane::Points& forces, const ::membrane::Points& velocitie
     return sum;
 }
 
+/// Whether a node cannot move but as it is driven.
+bool held(const State& state) {
+    return (state.blockedDOFs & State::DOF_XYZ) == State::DOF_XYZ;
+}
+
+/// Twice the area [m²] of a triangle times its unit normal.
+Vector3r doubleArea(const ::membrane::Points& x, const Vector3i& t) {
+    return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
+}
+
 } // namespace
 
 void MembraneForceEngine::postLoad(MembraneForceEngine&) {
@@ -70,14 +80,6 @@ void MembraneForceEngine::action() {
     if (airDensity > 0.) addDrag();
     if (beta > 0. || zeta > 0. || airDensity > 0.) scatter();
 }
-
-namespace {
-
-bool held(const State& state) {
-    return (state.blockedDOFs & State::DOF_XYZ) == State::DOF_XYZ;
-}
-
-} // namespace
 
 /// Looks up the bodies and computes what stays the same while it runs.
 void MembraneForceEngine::prepare(Scene& now) {
@@ -184,8 +186,8 @@ void MembraneForceEngine::addDamping() {
 void MembraneForceEngine::addDrag() {
     for (auto& f : dragForces_) f.setZero();
     for (const Vector3i& t : membrane->triangles) {
-        const Vector3r doubleArea = (x_[t[1]] - x_[t[0]]).cross(x_[t[2]] - x_[t[0]]);
-        for (int k = 0; k < 3; ++k) dragForces_[t[k]] += ::membrane::cornerDrag(airDensity, doubleArea, u_[t[k]]);
+        const Vector3r area = doubleArea(x_, t);
+        for (int k = 0; k < 3; ++k) dragForces_[t[k]] += ::membrane::cornerDrag(airDensity, area, u_[t[k]]);
     }
     dragPower = power(dragForces_, u_);
 }
@@ -209,9 +211,8 @@ Real MembraneForceEngine::criticalTimeStep() {
     if (airDensity > 0.) {
         drag.assign(x.size(), 0.);
         for (const Vector3i& t : membrane->triangles) {
-            const Vector3r doubleArea = (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
-            for (int k = 0; k < 3; ++k)
-                drag[t[k]] += ::membrane::cornerDragSlope(airDensity, doubleArea, states_[t[k]]->vel);
+            const Vector3r area = doubleArea(x, t);
+            for (int k = 0; k < 3; ++k) drag[t[k]] += ::membrane::cornerDragSlope(airDensity, area, states_[t[k]]->vel);
         }
     }
     return ::membrane::criticalTimeStep({membrane->rest(), masses, x, damping_, drag, law()});

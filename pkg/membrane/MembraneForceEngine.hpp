@@ -15,8 +15,6 @@ public:
     const ::membrane::Points& positions() const { return x_; }
     vector<Vector3r> lastPositions() const { return x_; }
     const ::membrane::Points& velocities() const { return v_; }
-    /// Velocities [m/s] at the time of the positions, of which damping and drag are functions.
-    const ::membrane::Points& midVelocities() const { return u_; }
     /// Step in which the forces were last computed; -1: none yet.
     long lastStep() const { return lastStep_; }
     const vector<shared_ptr<State>>& states() const { return states_; }
@@ -66,7 +64,9 @@ public:
 private:
     vector<shared_ptr<State>> states_;
     vector<Real> damping_; ///< c of each side [N s/m]
-    ::membrane::Points x_, v_, u_, creaseForces_, dampingForces_, dragForces_;
+    ::membrane::Points x_, v_;
+    ::membrane::Points u_; ///< velocities [m/s] at the time of x_, of which damping and drag are functions
+    ::membrane::Points creaseForces_, dampingForces_, dragForces_;
     const Scene* preparedFor_ = nullptr;
     Real checkedStep_ = -1.;
     long lastStep_ = -1;

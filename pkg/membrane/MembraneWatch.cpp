@@ -98,7 +98,7 @@ void MembraneWatch::stop(int part, Real gain) const {
     const ::membrane::Points &x = forces.positions(), &v = forces.velocities();
     const auto before = [&](int node) -> Vector3r { return x[node] - scene->dt * v[node]; };
 
-    // Whoever gave most in the last step.
+    // Where most energy moved in the last step; of the creases, where most is stored.
     std::string where;
     Real most = -1.;
     if (part == creasesPart) {

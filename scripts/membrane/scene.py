@@ -219,17 +219,35 @@ def advance(steps):
         step()
 
 
-def set_spin(sail, omega):
+def compute_forces(sail):
+    """Forces (N, 3) [N] on the nodes in the present state, gravity apart: nothing moves.
+
+    It takes a step of YADE in which neither integrator, rotation nor ledger takes part.
+    """
+    movers = (sail.rotation, sail.newton, sail.ledger)
+    were_dead = [engine.dead for engine in movers]
+    for engine in movers:
+        engine.dead = True
+    try:
+        yade.Omega().step()
+    finally:
+        for engine, was_dead in zip(movers, were_dead):
+            engine.dead = was_dead
+    return np.array([yade.Omega().forces.f(i, True) for i in sail.membrane.bodyIds])
+
+
+def set_spin(sail, omega, before=0.5):
     """Let all nodes turn about z at `omega` [rad/s]: v = omega x r.
 
-    The leapfrog's velocities belong to the time half a step before the positions.
+    The velocities are those of `before` steps ago: the leapfrog's lie half a step before the
+    positions.
     """
     scene = yade.Omega()
-    half = -0.5 * omega * scene.dt
+    angle = -before * omega * scene.dt
     for i in sail.membrane.bodyIds:
         state = scene.bodies[i].state
         x, y, _ = state.pos
-        x, y = x * np.cos(half) - y * np.sin(half), x * np.sin(half) + y * np.cos(half)
+        x, y = x * np.cos(angle) - y * np.sin(angle), x * np.sin(angle) + y * np.cos(angle)
         state.vel = (-omega * y, omega * x, 0.0)
 
 
@@ -301,20 +319,14 @@ def release(sail, omega, held):
     sail.field.dead, sail.newton.damping = True, 0
     sail.hold(held, False)
     scene = yade.Omega()
-    states = [scene.bodies[i].state for i in sail.membrane.bodyIds]
-    for state in states:
-        x, y, _ = state.pos
-        state.vel = (-omega * y, omega * x, 0.0)
+    set_spin(sail, omega, before=0)
     sail.forces.seenPositions = []
-    for engine in (sail.rotation, sail.newton, sail.ledger):
-        engine.dead = True
-    scene.step()  # only the forces
-    for engine in (sail.rotation, sail.newton, sail.ledger):
-        engine.dead = False
+    forces = compute_forces(sail)
     sail.forces.seenPositions = []
     gravity = np.array(sail.newton.gravity)
-    for i, state in zip(sail.membrane.bodyIds, states):
-        if set("xyz") <= set(state.blockedDOFs):
-            continue
-        acceleration = np.array(scene.forces.f(i, True)) / state.mass + gravity
+    for i, force in zip(sail.membrane.bodyIds, forces):
+        state = scene.bodies[i].state
+        free = [axis not in state.blockedDOFs for axis in "xyz"]
+        acceleration = free * (force / state.mass + gravity)
         state.vel = (np.array(state.vel) - 0.5 * scene.dt * acceleration).tolist()
+    sail.rotation.dead = sail.ledger.dead = False

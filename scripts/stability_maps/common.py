@@ -38,7 +38,7 @@ class Model:
         self.net = scene.add_membrane(self.rest, triangles, **options)
         settings = {"force_time_step": True, "energy_tolerance": None, **(engine or {})}
         built = scene.set_engines(self.net, gravity=gravity, **settings)
-        self.forces, self.ledger, self.watch = built.forces, built.ledger, built.watch
+        self.sail, self.forces, self.ledger = built, built.forces, built.ledger
         self.ledger.dead = True
         self.states = [O.bodies[i].state for i in self.net.bodyIds]
         self.masses = np.array(self.net.masses)
@@ -69,12 +69,9 @@ class Model:
         self.place(positions)
         if release:
             return
-        engines, O.dt = O.engines, 1e-30
-        O.engines = engines[:-2]  # without integrator and ledger
-        O.step()
-        O.engines = engines
-        for i in self.net.bodyIds:
-            O.forces.setPermF(i, tuple(-f for f in O.forces.f(i, True)))
+        O.dt = 1e-30
+        for i, force in zip(self.net.bodyIds, scene.compute_forces(self.sail).tolist()):
+            O.forces.setPermF(i, tuple(-f for f in force))
 
     def kinetic(self):
         """Kinetic energy [J] of all nodes."""
@@ -82,11 +79,10 @@ class Model:
 
     def start_ledger(self):
         """Exchange the ledger for one that starts at the next step; returns it."""
-        engines = O.engines
-        engines[-1] = plugin.MembraneLedger(forces=self.forces, gravity=self.ledger.gravity)
-        O.engines = engines
-        self.ledger = engines[-1]
-        return self.ledger
+        new = plugin.MembraneLedger(forces=self.forces, gravity=self.ledger.gravity)
+        O.engines = [new if isinstance(e, plugin.MembraneLedger) else e for e in O.engines]
+        self.ledger = self.sail.ledger = new
+        return new
 
 
 def kinetic(masses, velocities):

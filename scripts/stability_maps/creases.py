@@ -81,13 +81,17 @@ def collapse(lengths, beta, heights, step=5e-6, steps=400):
     Equilateral triangles of 20 mm, (7) with `rest` or `current` lengths, three nodes held.
     """
     height = LENGTH * np.sqrt(0.75)
-    bending = beta * YOUNG * THICKNESS**3 / 12
+    bending = beta * reference.bending_stiffness(YOUNG, THICKNESS)
     x = np.array([two_triangles(0.5 * np.pi, (h, height), LENGTH) for h in heights])
+    whole = np.tile(two_triangles(np.pi, (height, height), LENGTH), (len(heights), 1))
+    creases = np.arange(len(whole)).reshape(-1, 4)
+    rest, inside = reference.crease_frame(whole, creases), -np.ones(len(heights))
     v, largest = np.zeros((len(heights), 3)), np.zeros(len(heights))
     for _ in range(steps):
-        f = np.zeros_like(x)
-        fold(f, x, bending, lengths == "current", height)
-        v += step / CORNER * f[:, 2]
+        nodal, *_ = forces_by_hand(
+            x.reshape(-1, 3), creases, inside, rest, bending, lengths == "current"
+        )
+        v += step / CORNER * nodal.reshape(x.shape)[:, 2]
         x[:, 2] += step * v
         largest = np.maximum(largest, np.linalg.norm(v, axis=1))
     return largest
@@ -95,35 +99,50 @@ def collapse(lengths, beta, heights, step=5e-6, steps=400):
 
 def collapse_by_hand(lengths, beta, heights):
     """Speed (H,) [m/s] from the work of (7) along the arc from theta = pi/2 to 0."""
-    work = beta * YOUNG * THICKNESS**3 / 12 * LENGTH * np.pi**2 / 8
+    work = beta * reference.bending_stiffness(YOUNG, THICKNESS) * LENGTH * np.pi**2 / 8
     reach = heights if lengths == "current" else 0.75 * LENGTH**2 / heights
     return np.sqrt(2 * work / reach / CORNER)
 
 
-def fold(f, x, bending, current, height):
-    """Add the forces of (7) and (8) on a mountain crease AB of each pair to f (P, 4, 3) [N]."""
-    a, b, c, d = (x[:, i] for i in range(4))
-    axis = b - a
-    long = np.linalg.norm(axis, axis=1) + 1e-30
-    axis = axis / long[:, None]
-    arms, feet, heights = [], [], []
-    for apex in (c, d):
-        along = np.sum((apex - a) * axis, axis=1)
-        arm = (apex - a) - along[:, None] * axis
-        arms.append(arm)
-        feet.append(along / np.maximum(long, 0.05 * LENGTH))
-        heights.append(np.linalg.norm(arm, axis=1) + 1e-30)
-    sine = -np.sum(axis * np.cross(arms[0], arms[1]), axis=1)
-    theta = np.arctan2(sine, np.sum(arms[0] * arms[1], axis=1))
-    theta = np.where(theta <= -0.5 * np.pi, theta + 2 * np.pi, theta)
-    gamma = np.where(theta >= 0, 1.0, GAMMA)
-    for k, (sign, node) in enumerate(((1, 2), (-1, 3))):
-        open_ = sign * np.cross(axis, arms[k]) / heights[k][:, None]
-        reach, base = (heights[k], long) if current else (height, LENGTH)
-        push = (-bending * gamma * base * theta / reach**2)[:, None] * open_
-        f[:, node] += push
-        f[:, 0] -= (1 - feet[k])[:, None] * push
-        f[:, 1] -= feet[k][:, None] * push
+def forces_by_hand(x, creases, inside, rest, bending, current):
+    """Forces of (7) and (8) in NumPy, with rest or `current` lengths in (7).
+
+    Parameters
+    ----------
+    x : (N, 3) float
+        Positions [m].
+    creases : (C, 4) int
+        Nodes A, B, C, D; see reference.crease_nodes.
+    inside : (C,) float
+        See reference.crease_angle.
+    rest : dict
+        reference.crease_frame at rest.
+    bending : float
+        beta E J [N m].
+    current : bool
+
+    Returns
+    -------
+    nodal : (N, 3) float
+        [N]
+    largest : float
+        Largest force on an apex [N].
+    lowest : float
+        Lowest height over its rest value [-].
+    """
+    now = reference.crease_frame(x, creases)
+    theta = reference.angle_of(now, inside)
+    lengths = now if current else rest
+    moment = bending * np.where(theta >= 0, 1.0, GAMMA) * lengths["length"] * theta
+    on_apex, largest, lowest = [], 0.0, np.inf
+    for apex, sign in (("c", 1), ("d", -1)):
+        height = "height_" + apex
+        size = sign * inside * moment / np.maximum(lengths[height], 1e-12) ** 2  # no 0/0
+        on_apex.append(size[:, None] * now["normal_" + apex])
+        largest = max(largest, float(np.abs(size).max()))
+        lowest = min(lowest, float((now[height] / rest[height]).min()))
+    nodal = reference.crease_balance(x, creases, now, rest, *on_apex, reference.COLLAPSED)
+    return nodal, largest, lowest
 
 
 class CreaseForces:
@@ -157,21 +176,10 @@ class CreaseForces:
 
     def __call__(self):
         x = np.array([(p[0], p[1], p[2]) for p in self.forces.lastPositions()])
-        frame = reference.crease_frame(x, self.creases)
-        theta = reference.angle_of(frame, self.inside)
-        lengths = frame if self.current else self.rest
-        moment = self.bending * np.where(theta >= 0, 1.0, GAMMA) * lengths["length"] * theta
-        on_apex = []
-        for apex, sign in (("c", 1), ("d", -1)):
-            height = frame["height_" + apex]
-            reach = np.maximum(lengths["height_" + apex], 1e-12)  # no 0/0
-            size = sign * self.inside * moment / reach**2
-            on_apex.append(size[:, None] * frame["normal_" + apex])
-            self.largest = max(self.largest, float(np.abs(size).max()))
-            self.lowest = min(self.lowest, float((height / self.rest["height_" + apex]).min()))
-        nodal = reference.crease_balance(
-            x, self.creases, frame, self.rest, *on_apex, reference.COLLAPSED
+        nodal, largest, lowest = forces_by_hand(
+            x, self.creases, self.inside, self.rest, self.bending, self.current
         )
+        self.largest, self.lowest = max(self.largest, largest), min(self.lowest, lowest)
         for i, force in zip(self.ids, nodal.tolist()):
             O.forces.addF(i, force)
         self.calls += 1
@@ -318,6 +326,17 @@ def pair(rest, *, buckling=True, **engine):
     return Model(rest, TWO_TRIANGLES, creases=[(0, 1)], crease_signs=[1], engine=engine, **options)
 
 
+def follow(model, seconds):
+    """All energy [J] and the angle [rad] of a pair's crease in each step from now on, both (S,)."""
+    ledger = model.start_ledger()
+    totals, angles = [], []
+    for _ in range(int(seconds / O.dt)):
+        scene.advance(1)
+        totals.append(ledger.total + ledger.crease)
+        angles.append(model.forces.creaseAngles(model.forces.lastPositions())[0])
+    return np.array(totals), np.array(angles)
+
+
 def swing(share, law, seconds=0.05):
     """Largest relative error of the energy, and angles (S,) [rad], of a pair that swings freely."""
     rest = two_triangles(np.pi)
@@ -331,14 +350,8 @@ def swing(share, law, seconds=0.05):
     velocities -= np.average(velocities, axis=0, weights=model.masses)
     model.place(start, velocities)
     O.dt = share * model.forces.criticalTimeStep()
-    ledger = model.start_ledger()
-    totals, angles = [], []
-    for _ in range(int(seconds / O.dt)):
-        scene.advance(1)
-        totals.append(ledger.total + ledger.crease)
-        angles.append(model.forces.creaseAngles(model.forces.lastPositions())[0])
-    totals = np.array(totals)
-    return float(np.abs(totals / totals[0] - 1).max()), np.array(angles)
+    totals, angles = follow(model, seconds)
+    return float(np.abs(totals / totals[0] - 1).max()), angles
 
 
 def swing_frequency(masses, stiffness, theta0):
@@ -363,13 +376,8 @@ def swing_about(theta0, law, share, amplitude, seconds):
     model = pair(two_triangles(np.pi), buckling=False, beta=beta, theta0=theta0, crease_law=law)
     model.place(two_triangles(theta0 - amplitude))
     O.dt = share * model.forces.criticalTimeStep()
-    ledger = model.start_ledger()
-    totals, angles = [], []
-    for _ in range(int(seconds / O.dt)):
-        scene.advance(1)
-        totals.append(ledger.total + ledger.crease)
-        angles.append(model.forces.creaseAngles(model.forces.lastPositions())[0] - theta0)
-    totals, angles = np.array(totals), np.array(angles)
+    totals, angles = follow(model, seconds)
+    angles -= theta0
     at = np.flatnonzero(angles[:-1] * angles[1:] < 0)
     zeros = (at + angles[at] / (angles[at] - angles[at + 1])) * O.dt
     stiffness = beta * reference.bending_stiffness(YOUNG, THICKNESS)  # l_AB over the height is 1
@@ -397,13 +405,8 @@ def turn_through_cut(law, seconds):
     spin *= np.sqrt(5 * stiffness / kinetic(model.masses, spin))
     model.place(start, spin)
     O.dt = 0.2 * model.forces.criticalTimeStep()
-    ledger = model.start_ledger()
-    angles, energies = [], []
-    for _ in range(int(seconds / O.dt)):
-        scene.advance(1)
-        angles.append(model.forces.creaseAngles(model.forces.lastPositions())[0])
-        energies.append((ledger.total + ledger.crease) / stiffness)
-    return np.unwrap(angles), np.array(energies)
+    totals, angles = follow(model, seconds)
+    return np.unwrap(angles), totals / stiffness
 
 
 def momentum(law, ratio, zeta, seconds, samples=100):

@@ -240,8 +240,8 @@ def energy_errors(p):
 
     Returns
     -------
-    kinks, turns, balance : float
-        Sums over steps and sides, and the ledger's balance [J].
+    kinks, turns, balance, booked : float
+        Sums over steps and sides, and the ledger's balance and kinkError [J].
     """
     _, built = begin(p, equilibrium(SailParameters()))
     net = built.membrane
@@ -270,7 +270,7 @@ def energy_errors(p):
         kinks += np.sum(growth - straight)
         turns += np.sum(straight - work)
         old = new
-    return float(kinks), float(turns), built.ledger.balance
+    return float(kinks), float(turns), built.ledger.balance, built.ledger.kinkError
 
 
 def ledger_checks():
@@ -287,10 +287,10 @@ def ledger_checks():
         title = f"{LEDGER_TIME:g} s at dt = {dt:g} s: "
         name = title + "energy imbalance over spool work"
         found.append(recorded(name, float(imbalance), last, 0.5 * last, kink))
-        angular = np.abs(run.angular_defect[rows]).max() / np.abs(run.angular_momentum[rows]).max()
         name = title + "imbalance beyond the error at kinks over spool work"
         rest = np.abs(run.unexplained[rows]).max() / np.abs(run.spool_work[rows]).max()
         found.append(at_most(name, float(rest), 1e-6, "every energy and work is accounted for"))
+        angular = np.abs(run.angular_defect[rows]).max() / np.abs(run.angular_momentum[rows]).max()
         name = title + "angular momentum beyond the impulse"
         found.append(at_most(name, float(angular), 1e-12, "leapfrog under its own torque"))
     missing = [abs(early(1, dt).balance[-1]) for dt in STEPS]
@@ -299,13 +299,14 @@ def ledger_checks():
         found.append(Check(name, float(np.log2(coarse / fine)), 2, 0.4, "kinks: second order"))
 
     p = SailParameters(duration=SHOCK_TIME)
-    kinks, turns, balance = energy_errors(p)
+    kinks, turns, balance, booked = energy_errors(p)
     straight = energy_errors(replace(p, **UNBUCKLED))[2]
     title = f"first {1e3 * SHOCK_TIME:g} ms: "
     rest = "all else in the ledger is exact"
     name = title + "errors at kinks and of turning over the imbalance"
     return found + [
         Check(name, (kinks + turns) / balance, 1, 1e-3, rest),
+        Check(title + "kinks in the ledger over those in NumPy", booked / kinks, 1, 1e-6, "twice"),
         recorded(title + "share of the kinks", kinks / balance, 0.9998, 1e-2, "the rest: turning"),
         recorded(title + "energy imbalance", balance, -7.27e-7, 2e-7, kink, "J"),
         recorded(title + "the same if no side buckles", straight, 1.8e-8, 2e-8, "no kinks", "J"),
