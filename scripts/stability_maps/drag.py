@@ -2,11 +2,11 @@
 """Explicit air drag (10) on a plate that moves face on: the step at which it turns back, and
 grows.
 
-Each node of a triangle has the mass rho_f h S / 3 and in its first step the drag rho S V² / 6 at the
-velocity V that it was given, so that V' = V (1 - rho V dt / (2 rho_f h)): it reverses above dt = 2
-rho_f h / (rho V) and grows above twice that, whatever the mesh. Later steps extrapolate V. A node at
-which triangles meet at angles, or one with a tip mass, is slower, so safer. The engine's estimate
-takes the slope of the drag, 2 rho V S / 6, as damping: it stays below both.
+Each node of a triangle has the mass rho_f h S / 3 and in its first step the drag rho S V² / 6 at
+the velocity V that it was given, so that V' = V (1 - rho V dt / (2 rho_f h)): it reverses above dt
+= 2 rho_f h / (rho V) and grows above twice that, whatever the mesh. Later steps extrapolate V. A
+node at which triangles meet at angles, or one with a tip mass, is slower, so safer. The engine's
+estimate takes the slope of the drag, 2 rho V S / 6, as damping: it stays below both.
 """
 
 from itertools import product
