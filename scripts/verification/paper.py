@@ -15,10 +15,11 @@ from functools import cache
 
 import numpy as np
 from matplotlib.figure import Figure
+from membrane import measures
 from membrane.parameters import SailParameters
 
 from . import ROOT, Check, at_most, recorded
-from .deployment import DURATION, INTERVAL, Deployment, deploy, ensemble, equilibrium, perturbed
+from .deployment import DURATION, INTERVAL, deploy, ensemble, equilibrium, perturbed
 
 PICTURE = ROOT / "reference" / "table2.png"
 ALPHA_CREASE = (100.0, 1000.0)
@@ -62,12 +63,16 @@ QUANTITIES = (("largest lag", "deg"), ("half period", "s"))
 SPREAD_SOURCE = "standard deviation over the ensemble"
 
 
-def swing(run):
-    """Largest lag [deg] of the mean tip and time [s] from it to the following largest lead."""
-    phase = np.degrees(run.phase)
-    lag = int(np.argmin(phase))
-    lead = lag + int(np.argmax(phase[lag:]))
-    return float(-phase[lag]), float(run.times[lead] - run.times[lag])
+def lag_and_half_period(times, phase):
+    """Largest lag [deg] of the mean tip and time [s] from it to the following largest lead.
+
+    `times` (S,) [s], `phase` (S,) mean phase difference [rad].
+    """
+    found = measures.swing(times, phase)
+    lagged = found["time_of_largest_lag"]
+    after = times >= lagged
+    lead = times[after][np.argmax(phase[after])]
+    return float(np.degrees(found["largest_lag"])), float(lead - lagged)
 
 
 @cache
@@ -99,7 +104,7 @@ def draw(runs, swings, path):
         marker = {"color": style["color"], "marker": "sD"[alpha_crease < 1000]}
         marks.plot(*swings[alpha_crease, beta], linestyle="", label=label, **marker)
     for members, sign in ((ensemble(), "k."), (others(), "k+")):
-        twins = np.transpose([swing(run) for run in members])
+        twins = np.transpose([lag_and_half_period(run.times, run.phase) for run in members])
         marks.plot(*twins, sign, markersize=5, label="the same, 1e-9 m apart")
     curves.set(xlabel="time [s]", ylabel="mean phase difference [deg]")
     marks.set(xlabel="largest lag [deg]", ylabel="half period [s]")
@@ -142,11 +147,9 @@ def claims(kind, values, spread, unit):
 
 
 def known_swing():
-    """Check of `swing` on a curve whose extremes are known."""
+    """Check of `lag_and_half_period` on a curve whose extremes are known."""
     times = np.linspace(0, 2, 2001)
-    run = Deployment(times, *[None] * 8)
-    run.phase = -np.radians(30) * np.sin(np.pi * times)
-    lag, half = swing(run)
+    lag, half = lag_and_half_period(times, -np.radians(30) * np.sin(np.pi * times))
     exact = "-30 deg sin(pi t)"
     return [
         Check("largest lag of a known curve", lag, 30, 1e-6, exact, "deg"),
@@ -169,9 +172,9 @@ def checks(full):
     if not full:
         return found
     runs = {(a, b): case(a, b) for a in ALPHA_CREASE for b in BETA}
-    swings = {key: swing(run) for key, run in runs.items()}
-    members = np.array([swing(run) for run in ensemble()])
-    second = np.array([swing(run) for run in others()])
+    swings = {key: lag_and_half_period(run.times, run.phase) for key, run in runs.items()}
+    members = np.array([lag_and_half_period(run.times, run.phase) for run in ensemble()])
+    second = np.array([lag_and_half_period(run.times, run.phase) for run in others()])
     draw(runs, swings, PICTURE)
     for column, (kind, unit) in enumerate(QUANTITIES):
         values = {key: both[column] for key, both in swings.items()}
