@@ -3,10 +3,8 @@
 #include "SideForce.hpp"
 #include "TriangleStiffness.hpp"
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
-#include <set>
+#include <numeric>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -18,6 +16,10 @@ using NodePair = std::pair<int, int>;
 
 NodePair ordered(int a, int b) {
     return {std::min(a, b), std::max(a, b)};
+}
+
+NodePair ordered(const Eigen::Vector2i& nodes) {
+    return ordered(nodes[0], nodes[1]);
 }
 
 template <class... Parts> [[noreturn]] void refuse(const Parts&... parts) {
@@ -63,24 +65,92 @@ void checkParameters(const MeshInput& in) {
                in.creases.size(), " creases");
 }
 
-/// Node indices in range and all different.
-template <class Indices> void checkIndices(const char* field, std::size_t at, const Indices& nodes, std::size_t count) {
+/// Place of the first node that is out of range or repeats one before it; -1: none.
+template <class Indices> int firstBadNode(const Indices& nodes, std::size_t count) {
     for (int i = 0; i < nodes.size(); ++i) {
-        if (nodes[i] < 0 || nodes[i] >= static_cast<int>(count))
-            refuse("Membrane: ", field, "[", at, "] = (", nodes.transpose(), ") names node ", nodes[i],
-                   "; it must be in 0..", static_cast<long>(count) - 1);
+        if (nodes[i] < 0 || nodes[i] >= static_cast<int>(count)) return i;
         for (int j = 0; j < i; ++j)
-            if (nodes[i] == nodes[j])
-                refuse("Membrane: ", field, "[", at, "] = (", nodes.transpose(), ") repeats node ", nodes[i]);
+            if (nodes[i] == nodes[j]) return i;
     }
+    return -1;
 }
 
-/// A film side while it is being collected: its spring and the triangles that share it.
-struct FilmSide {
-    double stiffness = 0.;
-    std::array<int, 2> triangle{{-1, -1}};
-    std::array<bool, 2> forward{}; ///< does the triangle run from the lower to the higher node?
-    int triangles = 0;
+/// Node indices in range and all different.
+template <class Indices> void checkIndices(const char* field, std::size_t at, const Indices& nodes, std::size_t count) {
+    const int i = firstBadNode(nodes, count);
+    if (i < 0) return;
+    if (nodes[i] < 0 || nodes[i] >= static_cast<int>(count))
+        refuse("Membrane: ", field, "[", at, "] = (", nodes.transpose(), ") names node ", nodes[i],
+               "; it must be in 0..", static_cast<long>(count) - 1);
+    refuse("Membrane: ", field, "[", at, "] = (", nodes.transpose(), ") repeats node ", nodes[i]);
+}
+
+/// Number of entries before the first with bad indices: only those can be sorted by their nodes.
+template <class Entries> int countGood(const Entries& entries, std::size_t nodes) {
+    const auto bad = [nodes](const auto& entry) { return firstBadNode(entry, nodes) >= 0; };
+    return static_cast<int>(std::find_if(entries.begin(), entries.end(), bad) - entries.begin());
+}
+
+/// 0..count-1 sorted by the nodes of each, the lower one first; equal ones stay in order. Takes a time that grows with
+/// count + nodes.
+template <class NodesOf> std::vector<int> sortedByNodes(int count, std::size_t nodes, NodesOf nodesOf) {
+    std::vector<int> order(count), sorted(count);
+    std::iota(order.begin(), order.end(), 0);
+    for (int NodePair::*node : {&NodePair::second, &NodePair::first}) {
+        std::vector<int> place(nodes + 1, 0);
+        for (int i : order) ++place[nodesOf(i).*node + 1];
+        std::partial_sum(place.begin(), place.end(), place.begin());
+        for (int i : order) sorted[place[nodesOf(i).*node]++] = i;
+        order.swap(sorted);
+    }
+    return order;
+}
+
+/// Which of the pairs, given in the order of their nodes, repeat one before them?
+std::vector<bool> findRepeated(const std::vector<Eigen::Vector2i>& pairs, const std::vector<int>& order) {
+    std::vector<bool> repeated(pairs.size(), false);
+    for (std::size_t k = 1; k < order.size(); ++k)
+        repeated[order[k]] = ordered(pairs[order[k]]) == ordered(pairs[order[k - 1]]);
+    return repeated;
+}
+
+/// How the film's triangles share their sides. Half-side 3 t + i of triangle t runs from its corner i + 1 to i + 2.
+struct Film {
+    const std::vector<Eigen::Vector3i>& triangles;
+    std::vector<int> halves; ///< in the order of their nodes
+    std::vector<int> first;  ///< of each side in `halves`; its halves end where those of the next side begin
+    int fault = -1;          ///< first half-side whose triangle is repeated or the third at this side; -1: none
+    bool repeated = false;   ///< which of the two the fault is
+
+    int from(int half) const { return triangles[half / 3][(half + 1) % 3]; }
+    int to(int half) const { return triangles[half / 3][(half + 2) % 3]; }
+    int apex(int half) const { return triangles[half / 3][half % 3]; }
+    NodePair nodes(int half) const { return ordered(from(half), to(half)); }
+
+    explicit Film(const MeshInput& in) : triangles(in.triangles) {
+        const int good = countGood(triangles, in.nodes.size());
+        halves = sortedByNodes(3 * good, in.nodes.size(), [this](int half) { return nodes(half); });
+        first.reserve(halves.size() / 2 + 1);
+        for (std::size_t k = 0; k < halves.size(); ++k) {
+            if (k == 0 || nodes(halves[k]) != nodes(halves[k - 1])) first.push_back(static_cast<int>(k));
+            noteFault(first.back(), static_cast<int>(k));
+        }
+        first.push_back(static_cast<int>(halves.size()));
+    }
+
+    std::size_t sides() const { return first.size() - 1; }
+
+private:
+    /// `k` is the place of a half-side whose side begins at `begin`.
+    void noteFault(int begin, int k) {
+        const int half = halves[k];
+        if (k == begin || (fault >= 0 && fault < half)) return;
+        const bool again =
+            apex(half) == apex(halves[begin]) || (k > begin + 1 && apex(half) == apex(halves[begin + 1]));
+        if (!again && k < begin + 2) return;
+        fault = half;
+        repeated = again;
+    }
 };
 
 /// The largest angle of a triangle [degrees] and its place, to explain a negative stiffness.
@@ -92,15 +162,20 @@ std::pair<double, int> largestAngle(const Eigen::Vector3d& lengths) {
     return {std::acos(cosine) * 180. / 3.14159265358979323846, longest};
 }
 
-std::map<NodePair, FilmSide> collectFilm(const MeshInput& in, RestState& rest) {
-    std::map<NodePair, FilmSide> film;
-    std::set<std::array<int, 3>> seen;
+/// Sides with their stiffnesses, masses and area of the film.
+void addFilm(const MeshInput& in, const Film& film, RestState& rest) {
+    std::vector<int> sideOf(film.halves.size());
+    for (std::size_t s = 0; s < film.sides(); ++s) {
+        const auto [a, b] = film.nodes(film.halves[film.first[s]]);
+        rest.sides.push_back({a, b, SideKind::film, 0., 0., 0.});
+        for (int k = film.first[s]; k < film.first[s + 1]; ++k) sideOf[film.halves[k]] = static_cast<int>(s);
+    }
     for (std::size_t t = 0; t < in.triangles.size(); ++t) {
         const Eigen::Vector3i& tri = in.triangles[t];
+        const int half = static_cast<int>(3 * t);
         checkIndices("triangles", t, tri, in.nodes.size());
-        std::array<int, 3> key{{tri[0], tri[1], tri[2]}};
-        std::sort(key.begin(), key.end());
-        if (!seen.insert(key).second) refuse("Membrane: triangles[", t, "] = (", tri.transpose(), ") is repeated");
+        if (film.repeated && film.fault / 3 == static_cast<int>(t))
+            refuse("Membrane: triangles[", t, "] = (", tri.transpose(), ") is repeated");
 
         // Side i lies opposite corner i.
         Eigen::Vector3d lengths;
@@ -110,107 +185,123 @@ std::map<NodePair, FilmSide> collectFilm(const MeshInput& in, RestState& rest) {
             refuse("Membrane: triangles[", t, "] = (", tri.transpose(), ") has area ", area, " m²; it must be > 0");
 
         const Eigen::Vector3d k = triangleStiffness(lengths, area, in.young, in.poisson, in.thickness);
-        const auto [angle, apex] = largestAngle(lengths);
-        if (!k.allFinite())
+        if (!k.allFinite()) {
+            const auto [angle, apex] = largestAngle(lengths);
             refuse("Membrane: triangles[", t, "] = (", tri.transpose(),
                    ") has no stiffness by equation (5) at poisson = ", in.poisson, ": its angle of ", angle,
                    " degrees at node ", tri[apex], " makes the equations singular");
+        }
         for (int i = 0; i < 3; ++i) {
-            const int a = tri[(i + 1) % 3], b = tri[(i + 2) % 3];
-            if (k[i] < 0. && !in.allowNegativeStiffness)
+            const int a = film.from(half + i), b = film.to(half + i);
+            if (k[i] < 0. && !in.allowNegativeStiffness) {
+                const auto [angle, apex] = largestAngle(lengths);
                 refuse("Membrane: triangles[", t, "] = (", tri.transpose(), ") gives side (", a, ", ", b,
                        ") the stiffness ", k[i], " N/m; it must be >= 0. The angle of ", angle, " degrees at node ",
                        tri[apex], " is to blame: remesh, or set allowNegativeStiffness=True");
-            FilmSide& side = film[ordered(a, b)];
-            if (side.triangles == 2)
+            }
+            const int side = sideOf[half + i];
+            if (film.fault == half + i) {
+                const int* others = &film.halves[film.first[side]];
                 refuse("Membrane: side (", a, ", ", b, ") has a third triangle, triangles[", t, "], besides ",
-                       side.triangle[0], " and ", side.triangle[1], "; at most 2 may share a side");
-            side.stiffness += k[i];
-            side.triangle[side.triangles] = static_cast<int>(t);
-            side.forward[side.triangles] = a < b;
-            ++side.triangles;
+                       others[0] / 3, " and ", others[1] / 3, "; at most 2 may share a side");
+            }
+            rest.sides[side].stiffness += k[i];
         }
         rest.area += area;
         for (int i = 0; i < 3; ++i) rest.masses[tri[i]] += cornerMass(area, in.density, in.thickness);
     }
-    return film;
 }
 
-int apexOf(const Eigen::Vector3i& triangle, const NodePair& side) {
-    for (int i = 0; i < 3; ++i)
-        if (triangle[i] != side.first && triangle[i] != side.second) return triangle[i];
-    return -1;
-}
-
-Crease makeCrease(const MeshInput& in, std::size_t at, const std::map<NodePair, FilmSide>& film) {
+void addCrease(const MeshInput& in, std::size_t at, const Film& film, RestState& rest) {
     const Eigen::Vector2i& nodes = in.creases[at];
     const int sign = in.creaseSigns[at];
     checkIndices("creases", at, nodes, in.nodes.size());
     if (sign != 1 && sign != -1)
         refuse("Membrane: creaseSigns[", at, "] = ", sign, " must be +1 (mountain) or -1 (valley)");
-    const NodePair key = ordered(nodes[0], nodes[1]);
-    const auto found = film.find(key);
-    if (found == film.end())
-        refuse("Membrane: creases[", at, "] = (", nodes.transpose(), ") is no side of any triangle");
-    const FilmSide& side = found->second;
-    if (side.triangles != 2)
+    const int side = rest.sideBetween(nodes[0], nodes[1]);
+    if (side < 0) refuse("Membrane: creases[", at, "] = (", nodes.transpose(), ") is no side of any triangle");
+    if (film.first[side + 1] - film.first[side] != 2)
         refuse("Membrane: creases[", at, "] = (", nodes.transpose(),
                ") lies on the edge; it must be shared by 2 triangles");
-    if (side.forward[0] == side.forward[1])
-        refuse("Membrane: triangles ", side.triangle[0], " and ", side.triangle[1], " run along creases[", at, "] = (",
+    int left = film.halves[film.first[side]], right = film.halves[film.first[side] + 1];
+    if (film.from(left) == film.from(right))
+        refuse("Membrane: triangles ", left / 3, " and ", right / 3, " run along creases[", at, "] = (",
                nodes.transpose(), ") in the same direction; orient them alike");
 
     // ABC is the triangle that runs from the lower node A to the higher node B.
-    const int ofC = side.forward[0] ? 0 : 1;
-    Crease crease{key.first,
-                  key.second,
-                  apexOf(in.triangles[side.triangle[ofC]], key),
-                  apexOf(in.triangles[side.triangle[1 - ofC]], key),
-                  {}};
+    if (film.from(left) > film.to(left)) std::swap(left, right);
+    Crease crease{film.from(left), film.to(left), film.apex(left), film.apex(right), {}};
     const Eigen::Vector3d &a = in.nodes[crease.a], &b = in.nodes[crease.b];
     crease.rest.length = (b - a).norm();
     crease.rest.heightC = 2. * triangleArea(a, b, in.nodes[crease.c]) / crease.rest.length;
     crease.rest.heightD = 2. * triangleArea(a, b, in.nodes[crease.d]) / crease.rest.length;
     crease.rest.sign = -sign;
-    return crease;
+    rest.creases.push_back(crease);
+    rest.sides[side].kind = SideKind::crease;
+}
+
+void addCreases(const MeshInput& in, const Film& film, RestState& rest) {
+    const auto nodesOf = [&in](int i) { return ordered(in.creases[i]); };
+    const std::vector<bool> repeated =
+        findRepeated(in.creases, sortedByNodes(countGood(in.creases, in.nodes.size()), in.nodes.size(), nodesOf));
+    rest.creases.reserve(in.creases.size());
+    for (std::size_t i = 0; i < in.creases.size(); ++i) {
+        addCrease(in, i, film, rest);
+        if (repeated[i]) refuse("Membrane: creases[", i, "] = (", in.creases[i].transpose(), ") is repeated");
+    }
+}
+
+void addCables(const MeshInput& in, RestState& rest) {
+    const auto nodesOf = [&in](int i) { return ordered(in.cables[i]); };
+    std::vector<int> order = sortedByNodes(countGood(in.cables, in.nodes.size()), in.nodes.size(), nodesOf);
+    const std::vector<bool> repeated = findRepeated(in.cables, order);
+    for (std::size_t i = 0; i < in.cables.size(); ++i) {
+        checkIndices("cables", i, in.cables[i], in.nodes.size());
+        const NodePair nodes = ordered(in.cables[i]);
+        if (repeated[i] || rest.sideBetween(nodes.first, nodes.second) >= 0)
+            refuse("Membrane: cables[", i, "] = (", in.cables[i].transpose(),
+                   ") doubles another cable or a side of the film");
+        const double length = (in.nodes[nodes.first] - in.nodes[nodes.second]).norm();
+        if (!(length > 0.))
+            refuse("Membrane: cables[", i, "] = (", in.cables[i].transpose(), ") has length 0; it must be > 0");
+        rest.sides.push_back({nodes.first, nodes.second, SideKind::cable, length, in.cableStiffness / length, length});
+        for (int node : {nodes.first, nodes.second}) rest.masses[node] += 0.5 * in.cableDensity * length;
+    }
+    for (int& cable : order) cable += static_cast<int>(rest.filmSides);
+    rest.cablesByNodes = std::move(order);
 }
 
 } // namespace
+
+int RestState::sideBetween(int a, int b) const {
+    const NodePair wanted = ordered(a, b);
+    const auto nodesOf = [](const Side& side) { return NodePair(side.a, side.b); };
+    const auto filmEnd = sides.begin() + static_cast<std::ptrdiff_t>(filmSides);
+    const auto side = std::lower_bound(sides.begin(), filmEnd, wanted,
+                                       [&](const Side& s, const NodePair& nodes) { return nodesOf(s) < nodes; });
+    if (side != filmEnd && nodesOf(*side) == wanted) return static_cast<int>(side - sides.begin());
+    const auto cable = std::lower_bound(cablesByNodes.begin(), cablesByNodes.end(), wanted,
+                                        [&](int s, const NodePair& nodes) { return nodesOf(sides[s]) < nodes; });
+    return cable != cablesByNodes.end() && nodesOf(sides[*cable]) == wanted ? *cable : -1;
+}
 
 RestState restState(const MeshInput& in) {
     checkParameters(in);
     RestState rest;
     rest.masses.assign(in.nodes.size(), 0.);
-    const std::map<NodePair, FilmSide> film = collectFilm(in, rest);
-
-    std::set<NodePair> creased;
-    for (std::size_t i = 0; i < in.creases.size(); ++i) {
-        rest.creases.push_back(makeCrease(in, i, film));
-        if (!creased.insert({rest.creases.back().a, rest.creases.back().b}).second)
-            refuse("Membrane: creases[", i, "] = (", in.creases[i].transpose(), ") is repeated");
+    {
+        const Film film(in);
+        rest.filmSides = film.sides();
+        rest.sides.reserve(film.sides() + in.cables.size());
+        addFilm(in, film, rest);
+        addCreases(in, film, rest);
     }
-
-    for (const auto& [key, side] : film) {
-        const bool onCrease = creased.count(key) > 0;
-        const double length = (in.nodes[key.first] - in.nodes[key.second]).norm();
-        rest.sides.push_back({key.first, key.second, onCrease ? SideKind::crease : SideKind::film, length,
-                              side.stiffness,
-                              criticalLength(length, onCrease ? in.alphaCrease : in.alpha, in.thickness)});
+    for (Side& side : rest.sides) {
+        side.restLength = (in.nodes[side.a] - in.nodes[side.b]).norm();
+        side.critical =
+            criticalLength(side.restLength, side.kind == SideKind::crease ? in.alphaCrease : in.alpha, in.thickness);
     }
-
-    std::set<NodePair> tied;
-    for (std::size_t i = 0; i < in.cables.size(); ++i) {
-        checkIndices("cables", i, in.cables[i], in.nodes.size());
-        const NodePair key = ordered(in.cables[i][0], in.cables[i][1]);
-        if (film.count(key) || !tied.insert(key).second)
-            refuse("Membrane: cables[", i, "] = (", in.cables[i].transpose(),
-                   ") doubles another cable or a side of the film");
-        const double length = (in.nodes[key.first] - in.nodes[key.second]).norm();
-        if (!(length > 0.))
-            refuse("Membrane: cables[", i, "] = (", in.cables[i].transpose(), ") has length 0; it must be > 0");
-        rest.sides.push_back({key.first, key.second, SideKind::cable, length, in.cableStiffness / length, length});
-        for (int node : {key.first, key.second}) rest.masses[node] += 0.5 * in.cableDensity * length;
-    }
+    addCables(in, rest);
 
     for (std::size_t i = 0; i < in.pointMasses.size(); ++i) rest.masses[i] += in.pointMasses[i];
     for (std::size_t i = 0; i < rest.masses.size(); ++i)

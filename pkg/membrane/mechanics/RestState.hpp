@@ -2,6 +2,7 @@
 #pragma once
 #include "Crease.hpp"
 #include <Eigen/Core>
+#include <cstddef>
 #include <vector>
 
 namespace membrane {
@@ -40,12 +41,18 @@ struct Crease {
     CreaseRest rest;
 };
 
-/// Everything the forces need to know of the unloaded membrane. Film sides come first, cables last.
+/// Everything the forces need to know of the unloaded membrane. Sides of the film come first, sorted by (a, b), then
+/// cables as they were given.
 struct RestState {
     std::vector<Side> sides;
+    std::size_t filmSides = 0;      ///< number of sides of the film
+    std::vector<int> cablesByNodes; ///< indices in `sides` of the cables, sorted by (a, b)
     std::vector<Crease> creases;
     std::vector<double> masses; ///< (4) summed over triangles, plus cables and point masses [kg]
     double area = 0.;           ///< of the film [m²]
+
+    /// Index in `sides` of the side between two nodes; -1 if there is none.
+    int sideBetween(int a, int b) const;
 };
 
 /// Checks the input and computes the rest state.
