@@ -122,6 +122,28 @@ class TestMesh(Refusals):
         nodes = [*NODES[:4], NODES[2]]
         self.mesh_refused({"nodes": nodes, "cables": [(2, 4)]}, "cables[0] = (2 4)", "length 0")
 
+    def test_arrays_of_another_shape_or_with_numbers_too_large(self):
+        for name, array, parts in (
+            ("nodes", np.zeros((4, 2)), ("nodes has the shape (4, 2)", "must be (n, 3)")),
+            ("nodes", np.zeros(12), ("nodes has the shape (12,)", "must be (n, 3)")),
+            ("triangles", np.array([[0, 1]]), ("triangles has the shape (1, 2)", "(n, 3)")),
+            ("creases", np.array([0, 1]), ("creases has the shape (2,)", "(n, 2)")),
+            ("creaseSigns", np.array([[1]]), ("creaseSigns has the shape (1, 1)", "(n,)")),
+            ("pointMasses", np.ones((4, 1)), ("pointMasses has the shape (4, 1)", "(n,)")),
+            ("triangles", np.array([[0, 1, 2**32 + 2]]), ("triangles[0] holds 4294967298", "32")),
+        ):
+            self.mesh_refused({name: array}, *parts)
+        for name in ("triangles", "creases", "creaseSigns"):
+            whole = np.asarray(MESH[name])
+            self.mesh_refused({name: whole.astype(float)}, error=TypeError)
+            self.mesh_refused({name: whole.astype(complex)}, error=TypeError)
+
+    def test_arrays_are_checked_as_lists_are(self):
+        triangles = np.array([(0, 1, 4)])
+        self.mesh_refused({"triangles": triangles}, "triangles[0] = (0 1 4) names node 4", "0..3")
+        arrays = {name: np.array(value) for name, value in MESH.items()}
+        self.refused(ValueError, lambda: membrane.Membrane(**arrays), "material is missing")
+
     def test_buckling_parameters_below_zero(self):
         for name in ("alpha", "alphaCrease"):
             for bad in (-1.0, math.nan):
@@ -160,6 +182,10 @@ class TestMesh(Refusals):
         )
         bad = [*NODES[:3], (0.0, math.nan, 0.0)]
         self.refused(ValueError, lambda: net.addBodies(positions=bad), "positions[3]", "finite")
+        self.refused(
+            ValueError, lambda: net.addBodies(np.zeros((4, 2))), "positions has the shape (4, 2)"
+        )
+        self.refused(TypeError, lambda: net.addBodies("here"), "str")
         for radius in (0.0, -1.0, math.nan):
             self.refused(ValueError, lambda: net.addBodies(radius=radius), "radius = ", "> 0")
         self.assertEqual(len(O.bodies), 0)

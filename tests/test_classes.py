@@ -7,7 +7,7 @@ import unittest
 import membrane
 import numpy as np
 from membrane import scene
-from support import O, SceneTest, Sheet, grid
+from support import O, SceneTest, Sheet, grid, interaction_loop
 from yade import system
 from yade import wrapper as yade
 from yade.minieigenHP import Vector3
@@ -154,6 +154,71 @@ class TestClasses(SceneTest):
             self.assertIsInstance(made.geom, membrane.MembraneGeom)
         found = {(i.id1, i.id2): i.phys.dict() for i in O.interactions}
         self.assertEqual(found, expected)
+
+    def test_sides_are_found_whatever_bodies_their_nodes_have(self):
+        nodes, triangles = grid(3, jitter=0.1, rng=np.random.default_rng(3))
+        lone = [len(nodes), len(nodes) + 1]
+        nodes = np.concatenate([nodes, [[1.0, 0, 0], [2.0, 0, 0]]])
+        cables = [lone, [lone[0], 7], [3, lone[1]]]
+        Sheet(nodes, triangles, cables=cables)
+        O.interactions.clear()
+        bodies = np.random.default_rng(4).permutation(len(nodes))
+        net = membrane.Membrane(
+            material=scene.film(),
+            nodes=nodes.tolist(),
+            triangles=triangles.tolist(),
+            cables=cables,
+            bodyIds=bodies.tolist(),
+        )
+        O.engines = [interaction_loop(net)]
+        from yade import utils
+
+        for (a, b), length, kind in zip(net.sides, net.restLengths, net.sideKinds):
+            for pair in ((bodies[a], bodies[b]), (bodies[b], bodies[a])):
+                made = utils.createInteraction(*map(int, pair))
+                self.assertEqual(made.phys.restLength, length, kind)
+                O.interactions.clear()
+        self.assertEqual(utils.createInteraction(int(bodies[0]), int(bodies[15])).phys.kn, 0)
+
+    def test_membrane_takes_arrays_of_any_kind_and_layout_as_it_takes_lists(self):
+        rng = np.random.default_rng(5)
+        nodes, triangles = grid(3, length=0.5, jitter=0.1, rng=rng)
+        mesh = {
+            "nodes": nodes.astype(np.float32).astype(float),
+            "triangles": triangles,
+            "creases": np.array([[5, 6], [9, 10]]),
+            "creaseSigns": np.array([1, -1]),
+            "cables": np.array([[0, 15]]),
+            "pointMasses": rng.integers(0, 9, len(nodes)).astype(float),
+        }
+        lists = {name: array.tolist() for name, array in mesh.items()}
+        expected = membrane.Membrane(material=scene.film(), **lists).dict()
+        self.assertEqual(len(expected["nodes"]), 16)
+        single = {"f": np.float32, "i": np.int32}
+        arrays = [mesh, {k: array.astype(single[array.dtype.kind]) for k, array in mesh.items()}]
+        arrays.append({name: np.asfortranarray(array) for name, array in mesh.items()})
+        arrays.append({name: np.repeat(array, 2, axis=0)[::2] for name, array in mesh.items()})
+        arrays.append({**mesh, "pointMasses": mesh["pointMasses"].astype(int)})
+        for number, given in enumerate(arrays):
+            made = membrane.Membrane(material=scene.film(), **given).dict()
+            for name in mesh:
+                self.assertEqual(made[name], expected[name], (number, name))
+
+    def test_arrays_without_entries_are_empty_lists(self):
+        nodes, triangles = grid(1)
+        for none in (np.empty(0, dtype=int), np.empty((0, 2), dtype=int), np.empty(0)):
+            net = membrane.Membrane(
+                material=scene.film(), nodes=nodes, triangles=triangles, creases=none, cables=none
+            )
+            self.assertEqual((len(net.creases), len(net.cables), len(net.sides)), (0, 0, 5))
+
+    def test_bodies_are_put_where_an_array_says(self):
+        nodes, triangles = grid(1)
+        net = membrane.Membrane(material=scene.film(), nodes=nodes, triangles=triangles)
+        places = nodes + [1.0, 2.0, 3.0]
+        ids = net.addBodies(places)
+        self.assertEqual(ids, net.bodyIds)
+        np.testing.assert_array_equal([O.bodies[i].state.pos for i in ids], places)
 
     def test_interactions_are_real_from_the_start_and_stay(self):
         nodes, triangles = grid(2)

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "Membrane.hpp"
+#include "Buffers.hpp"
 #include "MembraneGeom.hpp"
 #include "MembranePhys.hpp"
 #include "mechanics/SideForce.hpp"
+#include <algorithm>
 #include <cmath>
 #include <core/BodyContainer.hpp>
 #include <core/Interaction.hpp>
 #include <core/InteractionContainer.hpp>
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
+#include <numeric>
 #include <pkg/common/Sphere.hpp>
 
 namespace yade {
@@ -16,10 +19,6 @@ namespace yade {
 YADE_PLUGIN((Membrane));
 
 namespace {
-
-std::uint64_t pairKey(Body::id_t a, Body::id_t b) {
-    return (static_cast<std::uint64_t>(std::min(a, b)) << 32) | static_cast<std::uint32_t>(std::max(a, b));
-}
 
 /// One value a side, computed from the side.
 template <class Get> auto ofSides(const ::membrane::RestState& rest, Get get) {
@@ -29,7 +28,25 @@ template <class Get> auto ofSides(const ::membrane::RestState& rest, Get get) {
     return values;
 }
 
+/// Fills an attribute from an array among the constructor's keywords; a list is left to YADE.
+template <class T> void takeArray(boost::python::dict& keywords, const char* name, vector<T>& attribute) {
+    if (keywords.has_key(name) &&
+        copyBuffer(boost::python::object(keywords[name]), string("Membrane: ") + name, attribute))
+        keywords[name].del();
+}
+
 } // namespace
+
+void Membrane::pyHandleCustomCtorArgs(boost::python::tuple&, boost::python::dict& keywords) {
+    const bool any = boost::python::len(keywords) > 0;
+    takeArray(keywords, "nodes", nodes);
+    takeArray(keywords, "triangles", triangles);
+    takeArray(keywords, "creases", creases);
+    takeArray(keywords, "creaseSigns", creaseSigns);
+    takeArray(keywords, "cables", cables);
+    takeArray(keywords, "pointMasses", pointMasses);
+    if (any && boost::python::len(keywords) == 0) callPostLoad(); // which YADE does only if it finds keywords
+}
 
 void Membrane::postLoad(Membrane&) {
     if (nodes.empty() && triangles.empty() && cables.empty()) return; // default constructed: filled in later by loading
@@ -54,7 +71,7 @@ void Membrane::postLoad(Membrane&) {
     input.alphaCrease = alphaCrease;
     input.allowNegativeStiffness = allowNegativeStiffness;
     rest_ = ::membrane::restState(input);
-    if (!bodyIds.empty()) indexSides();
+    if (!bodyIds.empty()) indexBodies();
 }
 
 void Membrane::checkUnchanged() const {
@@ -64,20 +81,30 @@ void Membrane::checkUnchanged() const {
             "made; make a new one");
 }
 
-void Membrane::indexSides() {
+void Membrane::indexBodies() {
     if (bodyIds.size() != nodes.size())
         throw std::invalid_argument("Membrane: bodyIds has " + std::to_string(bodyIds.size()) +
                                     " entries; it must have one for each of the " + std::to_string(nodes.size()) +
                                     " nodes");
-    sideOfBodies_.clear();
-    sideOfBodies_.reserve(rest_.sides.size());
-    for (std::size_t i = 0; i < rest_.sides.size(); ++i)
-        sideOfBodies_[pairKey(bodyIds[rest_.sides[i].a], bodyIds[rest_.sides[i].b])] = static_cast<int>(i);
+    nodesByBody_.clear();
+    if (std::is_sorted(bodyIds.begin(), bodyIds.end())) return;
+    nodesByBody_.resize(bodyIds.size());
+    std::iota(nodesByBody_.begin(), nodesByBody_.end(), 0);
+    std::sort(nodesByBody_.begin(), nodesByBody_.end(), [this](int a, int b) { return bodyIds[a] < bodyIds[b]; });
+}
+
+int Membrane::nodeOf(Body::id_t body) const {
+    if (nodesByBody_.empty()) {
+        const auto found = std::lower_bound(bodyIds.begin(), bodyIds.end(), body);
+        return found != bodyIds.end() && *found == body ? static_cast<int>(found - bodyIds.begin()) : -1;
+    }
+    const auto found = std::lower_bound(nodesByBody_.begin(), nodesByBody_.end(), body,
+                                        [this](int node, Body::id_t wanted) { return bodyIds[node] < wanted; });
+    return found != nodesByBody_.end() && bodyIds[*found] == body ? *found : -1;
 }
 
 int Membrane::sideBetween(Body::id_t a, Body::id_t b) const {
-    const auto found = sideOfBodies_.find(pairKey(a, b));
-    return found == sideOfBodies_.end() ? -1 : found->second;
+    return rest_.sideBetween(nodeOf(a), nodeOf(b));
 }
 
 vector<shared_ptr<State>> Membrane::states(Scene& scene) const {
@@ -125,6 +152,7 @@ vector<int> Membrane::addBodies(const vector<Vector3r>& at, Real radius) {
             throw std::invalid_argument("Membrane.addBodies: positions[" + std::to_string(i) + "] must be finite");
 
     if (material->id < 0) scene->addMaterial(material);
+    bodyIds.reserve(nodes.size());
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const shared_ptr<Body> body(new Body);
         const shared_ptr<Sphere> sphere(new Sphere);
@@ -138,8 +166,15 @@ vector<int> Membrane::addBodies(const vector<Vector3r>& at, Real radius) {
         body->state->blockedDOFs = State::DOF_RXRYRZ;
         bodyIds.push_back(scene->bodies->insert(body));
     }
-    indexSides();
+    indexBodies();
     return bodyIds;
+}
+
+vector<int> Membrane::addBodiesPy(const boost::python::object& at, Real radius) {
+    vector<Vector3r> places;
+    if (!copyBuffer(at, "Membrane.addBodies: positions", places))
+        places = boost::python::extract<vector<Vector3r>>(at)();
+    return addBodies(places, radius);
 }
 
 void Membrane::addInteractions() {

@@ -4,9 +4,7 @@
 #include "mechanics/RestState.hpp"
 #include <core/Body.hpp>
 #include <core/State.hpp>
-#include <cstdint>
 #include <lib/serialization/Serializable.hpp>
-#include <unordered_map>
 
 namespace yade {
 
@@ -15,6 +13,7 @@ class Scene;
 class Membrane : public Serializable {
 public:
     void postLoad(Membrane&);
+    void pyHandleCustomCtorArgs(boost::python::tuple& args, boost::python::dict& keywords) override;
 
     const ::membrane::RestState& rest() const { return rest_; }
     /// Throws std::runtime_error if the material is no longer the one from which the rest state was computed.
@@ -27,6 +26,7 @@ public:
     ::membrane::Points positions(Scene& scene, const vector<Vector3r>& given = {}) const;
 
     vector<int> addBodies(const vector<Vector3r>& at, Real radius);
+    vector<int> addBodiesPy(const boost::python::object& at, Real radius);
     void addInteractions();
     Real elasticEnergy() const;
 
@@ -43,8 +43,8 @@ public:
     // clang-format off
     YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Membrane, Serializable,
         "Mesh and rest state of a membrane: a film of triangles, creases on some of its sides, and cables. The attributes are "
-        "given once, as keywords of the constructor, and checked there; everything else follows from them. Sides are numbered "
-        "film first, then cables.",
+        "given once, as keywords of the constructor (lists, or numpy arrays, which take less time), and checked there; everything else "
+        "follows from them. Sides are numbered film first, then cables.",
         ((shared_ptr<MembraneMat>, material, , Attr::readonly, "Film: E [Pa], nu [-], rho [kg/m³], thickness h [m]."))
         ((vector<Vector3r>, nodes, , Attr::readonly, "Rest positions of the N nodes [m]; only the distances in triangles and cables count."))
         ((vector<Vector3i>, triangles, , Attr::readonly, "Nodes of each of the T triangles (0..N-1); those that share a crease must run the same way round."))
@@ -67,7 +67,7 @@ public:
         .add_property("criticalLengths", &Membrane::criticalLengths, "Length l_cr of each side below which it is buckled [m], paper equation (6).")
         .add_property("masses", &Membrane::masses, "Mass of each node [kg], paper equation (4), with cables and point masses.")
         .add_property("area", &Membrane::area, "Area of the film [m²].")
-        .def("addBodies", &Membrane::addBodies, (boost::python::arg("positions") = vector<Vector3r>(), boost::python::arg("radius") = 1e-3),
+        .def("addBodies", &Membrane::addBodiesPy, (boost::python::arg("positions") = vector<Vector3r>(), boost::python::arg("radius") = 1e-3),
             "Add one sphere a node to the scene, without bound and with blocked rotations; returns the ids.\n\n"
             ":param positions: where to put the nodes [m], N points; default: the rest positions\n"
             ":param radius: of the spheres [m], > 0; it counts only for drawing and for contacts of bounded bodies")
@@ -83,9 +83,11 @@ public:
 private:
     ::membrane::RestState rest_;
     Real young_ = 0., poisson_ = 0., thickness_ = 0.; ///< with which rest_ was computed
-    std::unordered_map<std::uint64_t, int> sideOfBodies_;
+    vector<int> nodesByBody_; ///< nodes in the order of their bodies' ids; empty if that is their own order
 
-    void indexSides();
+    void indexBodies();
+    /// Node of a body; -1 if it has none.
+    int nodeOf(Body::id_t body) const;
 };
 REGISTER_SERIALIZABLE(Membrane);
 
