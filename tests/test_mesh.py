@@ -6,7 +6,7 @@ from collections import Counter
 
 import numpy as np
 from membrane import geometry, measures
-from membrane.mesh import LINE_KINDS, sail_mesh
+from membrane.mesh import LINE_KINDS, sail_mesh, sheet_mesh
 
 OUTER, INNER, STRIP = 0.455, 0.103, 0.022
 REFINES = (1, 2, 3)
@@ -223,6 +223,38 @@ class TestSailMesh(unittest.TestCase):
                     sail_mesh(**{name: value})
 
 
+class TestSheetMesh(unittest.TestCase):
+    def test_nodes_lie_row_by_row_from_the_origin(self):
+        nodes, triangles = sheet_mesh(3, 4, 0.5)
+        self.assertEqual((nodes.shape, triangles.shape), ((12, 3), (12, 3)))
+        for row in range(3):
+            for column in range(4):
+                expected = [0.5 * column, 0.5 * row, 0]
+                np.testing.assert_array_equal(nodes[4 * row + column], expected)
+
+    def test_squares_are_cut_along_one_diagonal(self):
+        nodes, triangles = sheet_mesh(4, 6, 0.1)
+        sides, _, shares = geometry.unique_sides(triangles)
+        self.assertEqual(len(nodes) - len(sides) + len(triangles), 1)
+        self.assertEqual(np.sum(shares == 1), 2 * (3 + 5))
+        spans = np.unique(np.round((nodes[sides[:, 1]] - nodes[sides[:, 0]]) / 0.1), axis=0)
+        np.testing.assert_array_equal(spans, [[0, 1, 0], [1, 0, 0], [1, 1, 0]])
+
+    def test_triangles_face_up_and_cover_the_sheet(self):
+        areas = geometry.area_vectors(*sheet_mesh(5, 3, 0.2))
+        np.testing.assert_allclose(areas, np.tile([0, 0, 0.02], (16, 1)), rtol=1e-12)
+
+    def test_bad_values_are_refused_by_name(self):
+        for changes, text in (
+            ({"rows": 1}, "rows = 1: .* >= 2"),
+            ({"columns": 2.5}, "columns = 2.5: .* whole number"),
+            ({"spacing": 0.0}, "spacing = 0.0 m: .* > 0"),
+            ({"spacing": np.nan}, "spacing = nan m: .* finite"),
+        ):
+            with self.assertRaisesRegex(ValueError, text):
+                sheet_mesh(**{"rows": 3, "columns": 3, "spacing": 1.0, **changes})
+
+
 class TestGeometry(unittest.TestCase):
     def fold_of(self, angle, sign, rng):
         """Two equal triangles at a crease, folded to `angle` [rad], in a random position."""
@@ -276,6 +308,10 @@ class TestGeometry(unittest.TestCase):
         np.testing.assert_array_equal(sides, [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3]])
         np.testing.assert_array_equal(shares, [2, 1, 1, 1, 1])
         np.testing.assert_array_equal(triangle_sides, [[0, 3, 1], [0, 2, 4]])
+
+    def test_no_triangles_have_no_sides(self):
+        sides, triangle_sides, shares = geometry.unique_sides([])
+        self.assertEqual([a.shape for a in (sides, triangle_sides, shares)], [(0, 2), (0, 3), (0,)])
 
     def test_crossings_are_found_at_any_scale(self):
         triangle = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], dtype=float)

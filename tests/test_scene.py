@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Building blocks of a scene: spool, engines, spin, release."""
+"""Building blocks of a scene: spool, engines, spin, release; progress of its building."""
 
+import io
 import unittest
+from contextlib import redirect_stderr
+from unittest import mock
 
 import numpy as np
 from membrane import scene, spool
@@ -126,6 +129,25 @@ class TestDrivenBodies(SceneTest):
             (True, False, False),
         )
         self.assertEqual(self.sail.newton.damping, 0)
+
+
+class TestProgress(SceneTest):
+    def built(self, large):
+        """What is shown while a sheet of 9 nodes is added, `large` nodes being many."""
+        O.reset()
+        with redirect_stderr(io.StringIO()) as shown, mock.patch.object(scene, "LARGE", large):
+            scene.add_membrane(*grid(2))
+        return shown.getvalue().splitlines()
+
+    def test_building_of_a_large_membrane_names_its_stages(self):
+        lines = self.built(large=9)
+        self.assertEqual(len(lines), 4)
+        for line, text in zip(lines, ("rest state", "bodies", "interactions", "done in")):
+            self.assertRegex(line, rf"^building +\d+ %  {text}")
+        self.assertIn("100 %", lines[-1])
+
+    def test_building_of_a_small_one_is_silent(self):
+        self.assertEqual(self.built(large=10), [])
 
 
 class TestFreeScene(SceneTest):

@@ -29,9 +29,11 @@ def unique_sides(triangles):
         Number of triangles at each side: 1 on an edge, 2 inside.
     """
     triangles = np.asarray(triangles, dtype=int).reshape(-1, 3)
-    pairs = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    sides, side_of, shares = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
-    return sides, side_of.reshape(-1, 3), shares
+    size = 1 + triangles.max(initial=0)
+    ahead = np.roll(triangles, -1, axis=1)
+    keys = np.minimum(triangles, ahead) * size + np.maximum(triangles, ahead)
+    keys, side_of, shares = np.unique(keys, return_inverse=True, return_counts=True)
+    return np.column_stack(np.divmod(keys, size)), side_of.reshape(-1, 3), shares
 
 
 def side_lengths(nodes, sides):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The mesh of the square sail of section 3.1: four petals, fold lines, seams, tethers.
+"""The mesh of the square sail of section 3.1: petals, fold lines, seams, tethers; plain sheets.
 
 Frame: spin axis +z through the origin, the flat sail in the plane z = 0. Petal 0 points along
 +x, 1 along +y, 2 along -x, 3 along -y; its arc length s runs counter-clockwise, 0 at the petal's
@@ -191,6 +191,35 @@ def sail_mesh(
     )
     _lock(mesh)
     return mesh
+
+
+def sheet_mesh(rows, columns, spacing):
+    """Mesh of a flat rectangular sheet of squares, each cut in two along the same diagonal.
+
+    Parameters
+    ----------
+    rows, columns : int
+        Nodes along y and along x, >= 2.
+    spacing : float
+        Side of the squares [m], > 0.
+
+    Returns
+    -------
+    nodes : (rows columns, 3) float
+        Positions [m] row by row, from the origin along +x and then +y, in the plane z = 0.
+    triangles : (2 (rows - 1) (columns - 1), 3) int
+        Corners, counter-clockwise seen from +z, square by square in the order of the nodes.
+    """
+    for name, value in {"rows": rows, "columns": columns}.items():
+        if not isinstance(value, Integral) or value < 2:
+            raise ValueError(f"{name} = {value}: must be a whole number >= 2")
+    if not (np.isfinite(spacing) and spacing > 0):
+        raise ValueError(f"spacing = {spacing} m: must be finite and > 0")
+    y, x = np.indices((rows, columns))
+    nodes = spacing * np.stack([x, y, np.zeros_like(x)], axis=-1).reshape(-1, 3)
+    ids = np.arange(rows * columns).reshape(rows, columns)
+    a, b, c, d = ids[:-1, :-1], ids[:-1, 1:], ids[1:, 1:], ids[1:, :-1]
+    return nodes, np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
 
 
 def _check(outer_width, inner_width, fold_lines, refine, spool_radius, tether_segments):

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Progress of long work on the terminal: percentage, simulated time, speed, time left."""
+"""Progress of long work on the terminal: percentage, simulated time, speed, time left; stages."""
 
 import sys
 import time
+from contextlib import contextmanager
 
 
 class Progress:
@@ -42,3 +43,35 @@ class Progress:
         if live and share >= 1:
             self.stream.write("\n")
         self.stream.flush()
+
+
+@contextmanager
+def stages(label, weights, silent=False, stream=None):
+    """Show by name which stage of some work has begun, and at the end how long all took.
+
+    Parameters
+    ----------
+    label : str
+    weights : dict
+        The stages' names in turn, each with its share of the time, in any unit.
+    silent : bool
+        Show nothing, as is right for short work.
+    stream : file, optional
+        Default: standard error.
+
+    Yields
+    ------
+    function
+        To be called with the name of a stage when it begins.
+    """
+    progress = Progress(label, 1.0, stream)
+    names, total = list(weights), sum(weights.values())
+
+    def begin(name):
+        done = sum(weights[earlier] for earlier in names[: names.index(name)])
+        if not silent:
+            progress.show(done / total, name)
+
+    yield begin
+    if not silent:
+        progress.show(1.0, f"done in {time.monotonic() - progress.start:.1f} s")

@@ -7,6 +7,10 @@ import numpy as np
 from yade import wrapper as yade
 
 from . import _load, spool
+from .progress import stages
+
+LARGE = 100_000  # nodes: adding so many takes about a second, so that progress is shown
+ADDING = {"rest state": 2, "bodies": 2, "interactions": 6}  # stages and their shares of the time
 
 _plugin = _load.load()
 
@@ -102,18 +106,23 @@ def add_membrane(
     -------
     Membrane
     """
-    membrane = _plugin["Membrane"](
-        material=material or film(),
-        nodes=np.asarray(nodes, dtype=float).tolist(),
-        triangles=np.asarray(triangles, dtype=int).tolist(),
-        creases=np.asarray(creases, dtype=int).tolist(),
-        creaseSigns=np.asarray(crease_signs, dtype=int).tolist(),
-        cables=np.asarray(cables, dtype=int).tolist(),
-        **options,
-    )
-    places = [] if positions is None else np.asarray(positions, dtype=float).tolist()
-    membrane.addBodies(places, radius)
-    membrane.addInteractions()
+    nodes = np.asarray(nodes, dtype=float)
+    places = nodes if positions is None else np.asarray(positions, dtype=float)
+    with stages("building", ADDING, silent=len(nodes) < LARGE) as begin:
+        begin("rest state")
+        membrane = _plugin["Membrane"](
+            material=material or film(),
+            nodes=nodes,
+            triangles=np.asarray(triangles, dtype=int),
+            creases=np.asarray(creases, dtype=int),
+            creaseSigns=np.asarray(crease_signs, dtype=int),
+            cables=np.asarray(cables, dtype=int),
+            **options,
+        )
+        begin("bodies")
+        membrane.addBodies(places, radius)
+        begin("interactions")
+        membrane.addInteractions()
     return membrane
 
 
