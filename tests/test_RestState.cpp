@@ -3,9 +3,13 @@
 #include "pkg/membrane/mechanics/RestState.hpp"
 #include "pkg/membrane/mechanics/TriangleStiffness.hpp"
 #include "shapes.hpp"
+#include <algorithm>
 #include <functional>
 #include <gtest/gtest.h>
 #include <limits>
+#include <map>
+#include <numeric>
+#include <random>
 #include <string>
 
 using namespace membrane;
@@ -49,6 +53,65 @@ TEST(RestState, SidesAreOrderedWithTheFilmFirstAndCablesLast) {
     EXPECT_EQ(sideOf(rest, 0, 2).kind, SideKind::crease);
     EXPECT_EQ(sideOf(rest, 0, 1).kind, SideKind::film);
     EXPECT_DOUBLE_EQ(sideOf(rest, 0, 2).restLength, std::sqrt(2.));
+}
+
+/// A disordered sheet with creases, numbered at random, and cables between nodes that are no neighbours.
+MeshInput shuffledSheet(unsigned seed) {
+    MeshInput in = shapes::sheet(6, 5, 0.01, seed, true);
+    const int n = static_cast<int>(in.nodes.size());
+    std::vector<int> number(n);
+    std::iota(number.begin(), number.end(), 0);
+    std::mt19937 random(seed);
+    std::shuffle(number.begin(), number.end(), random);
+    const Points nodes = in.nodes;
+    for (int i = 0; i < n; ++i) in.nodes[number[i]] = nodes[i];
+    for (auto& triangle : in.triangles)
+        for (int& node : triangle) node = number[node];
+    for (auto& crease : in.creases)
+        for (int& node : crease) node = number[node];
+    for (int i : {30, 3, 17, 8}) in.cables.emplace_back(number[i], number[(i + 15) % n]);
+    in.cableStiffness = 200.;
+    std::shuffle(in.triangles.begin(), in.triangles.end(), random);
+    return in;
+}
+
+TEST(RestState, StiffnessesOfAnyNumberingAreSummedInTheOrderOfTheTriangles) {
+    const MeshInput in = shuffledSheet(17);
+    const RestState rest = restState(in);
+    std::map<std::pair<int, int>, double> expected; // to the last bit
+    for (const auto& t : in.triangles) {
+        Vector3d lengths;
+        for (int i = 0; i < 3; ++i) lengths[i] = (in.nodes[t[(i + 1) % 3]] - in.nodes[t[(i + 2) % 3]]).norm();
+        const double area = triangleArea(in.nodes[t[0]], in.nodes[t[1]], in.nodes[t[2]]);
+        const Vector3d k = triangleStiffness(lengths, area, in.young, in.poisson, in.thickness);
+        for (int i = 0; i < 3; ++i) expected[std::minmax({t[(i + 1) % 3], t[(i + 2) % 3]})] += k[i];
+    }
+    ASSERT_EQ(rest.filmSides, expected.size());
+    ASSERT_EQ(rest.sides.size(), expected.size() + in.cables.size());
+    auto side = rest.sides.begin();
+    for (const auto& [nodes, stiffness] : expected) { // sorted by nodes
+        EXPECT_EQ(std::pair(side->a, side->b), nodes);
+        EXPECT_EQ(side->stiffness, stiffness);
+        ++side;
+    }
+    for (const auto& cable : in.cables) {
+        EXPECT_EQ(side->kind, SideKind::cable);
+        EXPECT_EQ(std::pair(side->a, side->b), std::pair(cable.minCoeff(), cable.maxCoeff()));
+        ++side;
+    }
+}
+
+TEST(RestState, SideIsFoundBetweenItsNodesAndNoneBetweenOthers) {
+    const RestState rest = restState(shuffledSheet(18));
+    const int n = static_cast<int>(rest.masses.size());
+    std::map<std::pair<int, int>, int> sides;
+    for (std::size_t i = 0; i < rest.sides.size(); ++i) sides[{rest.sides[i].a, rest.sides[i].b}] = static_cast<int>(i);
+    for (int a = -1; a <= n; ++a) {
+        for (int b = -1; b <= n; ++b) {
+            const auto side = sides.find(std::minmax(a, b));
+            EXPECT_EQ(rest.sideBetween(a, b), side == sides.end() ? -1 : side->second) << a << " " << b;
+        }
+    }
 }
 
 TEST(RestState, BucklingParameterIsThatOfTheKindOfSide) {
@@ -213,7 +276,9 @@ const Refusal refusals[] = {
          in.nodes[1] = {0.5, 0.5, 0.};
      },
      {"triangles[0]", "area"}},
-    {"ThirdTriangleOnASide", [](MeshInput& in) { in.triangles.emplace_back(0, 2, 4); }, {"(0, 2)", "at most 2"}},
+    {"ThirdTriangleOnASide",
+     [](MeshInput& in) { in.triangles.emplace_back(0, 2, 4); },
+     {"(0, 2)", "triangles[2], besides 0 and 1", "at most 2"}},
     {"CreaseOnNoSide",
      [](MeshInput& in) {
          in.creases[0] = {1, 3};
@@ -237,6 +302,38 @@ const Refusal refusals[] = {
          in.triangles[1] = {2, 0, 3};
      },
      {"creases[0]", "orient"}},
+    // Of several faults the first triangle's is named, whatever it is.
+    {"RepeatedTriangleBeforeOneOutOfRange",
+     [](MeshInput& in) {
+         in.triangles.emplace_back(2, 0, 1);
+         in.triangles.emplace_back(0, 1, 9);
+     },
+     {"triangles[2]", "repeated"}},
+    {"OneOutOfRangeBeforeARepeatedTriangle",
+     [](MeshInput& in) {
+         in.triangles.emplace_back(0, 1, 9);
+         in.triangles.emplace_back(2, 0, 1);
+     },
+     {"triangles[2]", "node 9"}},
+    {"NoAreaBeforeARepeatedTriangle",
+     [](MeshInput& in) {
+         in.nodes[1] = {0.5, 0.5, 0.};
+         in.triangles.emplace_back(2, 0, 1);
+     },
+     {"triangles[0]", "area"}},
+    {"RepeatedTriangleBeforeAThirdOnASide",
+     [](MeshInput& in) {
+         in.triangles.emplace_back(3, 2, 0);
+         in.triangles.emplace_back(0, 1, 4);
+         in.triangles.emplace_back(0, 1, 3);
+     },
+     {"triangles[2]", "repeated"}},
+    {"ThirdOnASideBeforeARepeatedTriangle",
+     [](MeshInput& in) {
+         in.triangles.emplace_back(0, 2, 4);
+         in.triangles.emplace_back(2, 4, 0);
+     },
+     {"third triangle, triangles[2]"}},
     {"CableTwice", [](MeshInput& in) { in.cables.emplace_back(1, 4); }, {"cables[1]", "doubles"}},
     {"CableOnAFilmSide",
      [](MeshInput& in) {
