@@ -62,7 +62,7 @@ class Sheet:
         velocities = np.zeros_like(positions) if velocities is None else velocities
         for state, x, v in zip(self.states, np.asarray(positions).tolist(), velocities.tolist()):
             state.pos, state.vel = x, v
-        self.engine.seenPositions = []
+        self.engine.forgetVelocities()
         return self
 
     def _forces(self, *engines):

@@ -83,7 +83,7 @@ class TestClasses(SceneTest):
             ("MembraneMat", "thickness", "young"),
             ("MembraneGeom", "length", "normal"),
             ("MembranePhys", "restLength", "kn"),
-            ("MembraneForceEngine", "dampingPower", "dead"),
+            ("MembraneForceEngine", "seenPositions", "dead"),
         ):
             self.assertLessEqual({own, inherited}, getattr(membrane, name)().dict().keys())
 
@@ -111,7 +111,7 @@ class TestClasses(SceneTest):
         with self.assertRaises(AttributeError):
             net.alpha = 4.0
         with self.assertRaises(AttributeError):
-            membrane.MembraneForceEngine().dampingPower = 1.0
+            membrane.MembraneForceEngine().seenPositions = []
 
     def test_dispatchers_find_the_functors(self):
         sheet = Sheet(*grid(1))

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneForceEngine.hpp"
 #include "Faults.hpp"
+#include "MembraneLedger.hpp"
 #include "mechanics/CriticalTimeStep.hpp"
 #include "mechanics/Damping.hpp"
 #include "mechanics/Drag.hpp"
-#include "mechanics/SideForce.hpp"
 #include <cmath>
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
 #include <lib/high-precision/Constants.hpp>
+#include <numeric>
 #include <sstream>
 
 namespace yade {
@@ -27,23 +28,27 @@ void requireNotNegative(const char* field, Real value) {
     if (!(value >= 0.) || !std::isfinite(value)) refuse(field, value, "finite and >= 0");
 }
 
-Real power(const ::membrane::Points& forces, const ::membrane::Points& velocities) {
-    Real sum = 0.;
-    for (std::size_t i = 0; i < forces.size(); ++i) sum += forces[i].dot(velocities[i]);
-    return sum;
-}
-
-/// Whether a node cannot move but as it is driven.
-bool held(const State& state) {
-    return (state.blockedDOFs & State::DOF_XYZ) == State::DOF_XYZ;
-}
-
 /// Twice the area [m²] of a triangle times its unit normal.
 Vector3r doubleArea(const ::membrane::Points& x, const Vector3i& t) {
     return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
 }
 
 } // namespace
+
+bool isHeld(const State& state) {
+    return (state.blockedDOFs & State::DOF_XYZ) == State::DOF_XYZ;
+}
+
+Vector3r centredVelocity(const State& state, const Vector3r& seenPosition, const Vector3r& seenVelocity, Real dt) {
+    // The velocity that moved the node to where it is: a driven one has got its next already.
+    const bool driven = isHeld(state);
+    const Vector3r& arrived = driven ? seenVelocity : state.vel;
+    const Real rounding = 1e-15 * state.pos.norm(), moved = dt * arrived.norm();
+    // Not so if someone has put it elsewhere, given it another velocity or changed the step.
+    if (!((state.pos - seenPosition - dt * arrived).norm() <= 1e-9 * moved + rounding)) return state.vel;
+    const Real share = driven ? 0.5 : 1.5;
+    return share * state.vel + (1. - share) * seenVelocity;
+}
 
 void MembraneForceEngine::postLoad(MembraneForceEngine&) {
     requireNotNegative("beta", beta);
@@ -69,16 +74,16 @@ void MembraneForceEngine::postLoad(MembraneForceEngine&) {
 
 void MembraneForceEngine::action() {
     faults::raise(scene);
-    if (preparedFor_ != scene) prepare(*scene);
+    if (preparedFor_ != scene) {
+        prepare(*scene);
+        checkedStep_ = -1.;
+        keepLengths_ = false;
+        preparedFor_ = scene;
+    }
     gather();
-    centreVelocities();
     if (scene->dt != checkedStep_ || scene->iter % timeStepCheckPeriod == 0) checkTimeStep();
+    computeForces();
     lastStep_ = scene->iter;
-
-    if (beta > 0.) addCreases();
-    if (zeta > 0.) addDamping();
-    if (airDensity > 0.) addDrag();
-    if (beta > 0. || zeta > 0. || airDensity > 0.) scatter();
 }
 
 /// Looks up the bodies and computes what stays the same while it runs.
@@ -86,54 +91,87 @@ void MembraneForceEngine::prepare(Scene& now) {
     if (!membrane) throw std::runtime_error("MembraneForceEngine: membrane is not set");
     states_ = membrane->states(now);
     membrane->checkUnchanged();
-    const std::size_t n = states_.size();
-    for (std::size_t i = 0; i < n; ++i)
+    allNodes_.resize(states_.size());
+    std::iota(allNodes_.begin(), allNodes_.end(), 0);
+    for (const int i : allNodes_)
         if (!(states_[i]->mass > 0.) || !std::isfinite(states_[i]->mass))
             throw std::runtime_error("Membrane: the mass " + std::to_string(states_[i]->mass) + " kg of body #" +
                                      std::to_string(membrane->bodyIds[i]) + " must be finite and > 0");
-    for (::membrane::Points* points : {&x_, &v_, &u_, &creaseForces_, &dampingForces_, &dragForces_})
-        points->assign(n, Vector3r::Zero());
-    creasePower = dampingPower = dragPower = 0.; // of parts no longer computed
-    damping_.clear();
+    prepareSweep(vector<char>(states_.size(), false), 1);
+}
+
+void MembraneForceEngine::prepareSweep(const vector<char>& owned, int parts) {
+    vector<Real> masses;
+    masses.reserve(states_.size());
+    for (const auto& state : states_) masses.push_back(state->mass);
+    ::membrane::Laws laws;
+    laws.crease = law();
+    laws.airDensity = airDensity;
+    laws.damping = dampingCoefficients();
+    sweep_.prepare(membrane->rest(), membrane->triangles, laws, masses, owned, parts);
+}
+
+vector<Real> MembraneForceEngine::dampingCoefficients() const {
+    vector<Real> c;
+    if (!(zeta > 0.)) return c;
+    c.reserve(membrane->rest().sides.size());
     for (const ::membrane::Side& s : membrane->rest().sides)
-        damping_.push_back(
-            ::membrane::dampingCoefficient(zeta, s.stiffness, 0.5 * (states_[s.a]->mass + states_[s.b]->mass)));
-    checkedStep_ = -1.;
-    preparedFor_ = &now;
+        c.push_back(::membrane::dampingCoefficient(zeta, s.stiffness, 0.5 * (states_[s.a]->mass + states_[s.b]->mass)));
+    return c;
 }
 
 void MembraneForceEngine::gather() {
+    const bool seen = seenPositions.size() == states_.size() && seenVelocities.size() == states_.size();
+    seenPositions.resize(states_.size());
+    seenVelocities.resize(states_.size());
     Real probe = 0.; // 0 times anything finite; NaN otherwise
-    for (std::size_t i = 0; i < states_.size(); ++i) {
-        x_[i] = states_[i]->pos;
-        v_[i] = states_[i]->vel;
-        probe += 0. * (x_[i].sum() + v_[i].sum());
+    for (const int i : allNodes_) {
+        const State& state = *states_[i];
+        sweep_.x.set(i, state.pos);
+        sweep_.v.set(i, state.vel);
+        sweep_.u.set(i, seen ? centredVelocity(state, seenPositions[i], seenVelocities[i], scene->dt) : state.vel);
+        seenPositions[i] = state.pos;
+        seenVelocities[i] = state.vel;
+        probe += 0. * (state.pos.sum() + state.vel.sum());
     }
-    if (probe == 0.) return;
-    for (std::size_t i = 0; i < states_.size(); ++i)
-        if (!x_[i].allFinite() || !v_[i].allFinite())
-            throw std::runtime_error("Membrane: the run diverged at t = " + std::to_string(scene->time) + " s: node " +
-                                     std::to_string(i) + " (body #" + std::to_string(membrane->bodyIds[i]) +
-                                     ") has a position or velocity that is not finite");
+    if (!(probe == 0.)) stopDiverged();
 }
 
-/// Velocities at the time of the positions: with those half a step old, damping and drag would be of first order in
-/// the step, and a spinning membrane would be under a false tension.
-void MembraneForceEngine::centreVelocities() {
-    const bool seen = seenPositions.size() == x_.size() && seenVelocities.size() == x_.size();
-    u_ = v_;
-    for (std::size_t i = 0; seen && i < x_.size(); ++i) {
-        // The velocity that moved the node to where it is: a driven one has got its next already.
-        const bool driven = held(*states_[i]);
-        const Vector3r& arrived = driven ? seenVelocities[i] : v_[i];
-        const Real rounding = 1e-15 * x_[i].norm(), moved = scene->dt * arrived.norm();
-        // Not so if someone has put it elsewhere, given it another velocity or changed the step.
-        if (!((x_[i] - seenPositions[i] - scene->dt * arrived).norm() <= 1e-9 * moved + rounding)) continue;
-        const Real share = driven ? 0.5 : 1.5;
-        u_[i] = share * v_[i] + (1. - share) * seenVelocities[i];
-    }
-    seenPositions = x_;
-    seenVelocities = v_;
+void MembraneForceEngine::stopDiverged() const {
+    std::size_t lost = 0;
+    while (lost + 1 < states_.size() && sweep_.x.at(lost).allFinite() && sweep_.v.at(lost).allFinite()) ++lost;
+    throw std::runtime_error("Membrane: the run diverged at t = " + std::to_string(scene->time) + " s: node " +
+                             std::to_string(lost) + " (body #" + std::to_string(membrane->bodyIds[lost]) +
+                             ") has a position or velocity that is not finite");
+}
+
+MembraneLedger* MembraneForceEngine::ledger() const {
+    for (const auto& engine : scene->engines)
+        if (!engine->dead)
+            if (auto* found = dynamic_cast<MembraneLedger*>(engine.get()))
+                if (found->forces.get() == this) return found;
+    return nullptr;
+}
+
+void MembraneForceEngine::continueLedger(const MembraneLedger* of) {
+    if (of && of->started && !keepLengths_ && of->lastLengths.size() == membrane->rest().sides.size())
+        sweep_.setLengths(of->lastLengths);
+    keepLengths_ = madeSums_ = of != nullptr;
+}
+
+void MembraneForceEngine::computeForces() {
+    const MembraneLedger* const counting = ledger();
+    continueLedger(counting);
+    if (!counting && !(beta > 0. || zeta > 0. || airDensity > 0.)) return; // all forces were 0 from the start
+    ::membrane::SweepStep step;
+    step.dt = scene->dt;
+    step.move = false;
+    step.apart = true;
+    step.elastic = step.sums = counting;
+    sweep_.step(step);
+    for (const int i : allNodes_)
+        scene->forces.addForce(membrane->bodyIds[i],
+                               sweep_.creaseForce(i) + sweep_.dampingForce(i) + sweep_.dragForce(i));
 }
 
 void MembraneForceEngine::checkTimeStep() {
@@ -149,64 +187,51 @@ void MembraneForceEngine::checkTimeStep() {
     checkedStep_ = scene->dt;
 }
 
-void MembraneForceEngine::addCreases() {
-    const ::membrane::CreaseLaw lawNow = law();
-    for (auto& f : creaseForces_) f.setZero();
-    for (const ::membrane::Crease& c : membrane->rest().creases) {
-        const ::membrane::CreaseState state = ::membrane::creaseState(c.rest, x_[c.a], x_[c.b], x_[c.c], x_[c.d]);
-        const ::membrane::CreaseForces f = ::membrane::creaseForces(c.rest, lawNow, state);
-        creaseForces_[c.a] += f.a;
-        creaseForces_[c.b] += f.b;
-        creaseForces_[c.c] += f.c;
-        creaseForces_[c.d] += f.d;
-    }
-    creasePower = power(creaseForces_, u_);
+vector<Vector3r> MembraneForceEngine::lastPositions() const {
+    vector<Vector3r> x;
+    if (lastStep_ < 0) return x;
+    x.reserve(states_.size());
+    for (const int i : allNodes_) x.push_back(positionSeen(i));
+    return x;
 }
 
-void MembraneForceEngine::addDamping() {
-    for (auto& f : dampingForces_) f.setZero();
-    const auto& sides = membrane->rest().sides;
-    for (std::size_t i = 0; i < sides.size(); ++i) {
-        const ::membrane::Side& s = sides[i];
-        const Vector3r span = x_[s.b] - x_[s.a];
-        const Real length = span.norm();
-        if (!(length > 0.)) continue;
-        Real tension = damping_[i] * span.dot(u_[s.b] - u_[s.a]) / length;
-        if (s.kind == ::membrane::SideKind::cable) { // a slack cable is not damped, and damping may not make one push
-            if (length <= s.restLength) continue;
-            tension = std::max(tension, -::membrane::sideTension(length, s.stiffness, s.restLength, s.critical));
-        }
-        const Vector3r force = (tension / length) * span;
-        dampingForces_[s.a] += force;
-        dampingForces_[s.b] -= force;
-    }
-    dampingPower = power(dampingForces_, u_);
+boost::python::object MembraneForceEngine::lastPositionsBytes() const {
+    const vector<Vector3r> x = lastPositions();
+    static_assert(sizeof(Vector3r) == 3 * sizeof(Real));
+    return boost::python::object(boost::python::handle<>(
+        PyBytes_FromStringAndSize(reinterpret_cast<const char*>(x.data()), x.size() * sizeof(Vector3r))));
 }
 
-void MembraneForceEngine::addDrag() {
-    for (auto& f : dragForces_) f.setZero();
-    for (const Vector3i& t : membrane->triangles) {
-        const Vector3r area = doubleArea(x_, t);
-        for (int k = 0; k < 3; ++k) dragForces_[t[k]] += ::membrane::cornerDrag(airDensity, area, u_[t[k]]);
-    }
-    dragPower = power(dragForces_, u_);
+vector<Vector3r> MembraneForceEngine::ofNodes(Vector3r (::membrane::Sweep::*force)(int) const) const {
+    vector<Vector3r> forces;
+    for (const int i : allNodes_) forces.push_back((sweep_.*force)(i));
+    return forces;
 }
 
-void MembraneForceEngine::scatter() const {
-    for (std::size_t i = 0; i < states_.size(); ++i)
-        scene->forces.addForce(membrane->bodyIds[i], creaseForces_[i] + dampingForces_[i] + dragForces_[i]);
+vector<Vector3r> MembraneForceEngine::nodeForces() {
+    const shared_ptr<Scene> current = Omega::instance().getScene();
+    current->forces.sync();
+    vector<Vector3r> forces;
+    for (const int i : allNodes_) forces.push_back(current->forces.getForce(membrane->bodyIds[i]));
+    return forces;
 }
 
 Real MembraneForceEngine::criticalTimeStep() {
     const shared_ptr<Scene> current = Omega::instance().getScene();
-    if (preparedFor_ != current.get()) prepare(*current);
+    writeBack();
+    if (preparedFor_ != current.get()) {
+        if (!membrane) throw std::runtime_error("MembraneForceEngine: membrane is not set");
+        states_ = membrane->states(*current);
+        membrane->checkUnchanged();
+    }
     ::membrane::Points x;
     vector<Real> masses;
     for (const auto& state : states_) {
         x.push_back(state->pos);
         // A node held in some directions only counts as free: that bounds the step from below.
-        masses.push_back(held(*state) ? 0. : state->mass);
+        masses.push_back(isHeld(*state) ? 0. : state->mass);
     }
+    const vector<Real> damping = dampingCoefficients();
     vector<Real> drag;
     if (airDensity > 0.) {
         drag.assign(x.size(), 0.);
@@ -215,7 +240,7 @@ Real MembraneForceEngine::criticalTimeStep() {
             for (int k = 0; k < 3; ++k) drag[t[k]] += ::membrane::cornerDragSlope(airDensity, area, states_[t[k]]->vel);
         }
     }
-    return ::membrane::criticalTimeStep({membrane->rest(), masses, x, damping_, drag, law()});
+    return ::membrane::criticalTimeStep({membrane->rest(), masses, x, damping, drag, law()});
 }
 
 Real MembraneForceEngine::creaseEnergy(const ::membrane::Points& x) const {
@@ -227,12 +252,14 @@ Real MembraneForceEngine::creaseEnergy(const ::membrane::Points& x) const {
     return energy;
 }
 
-Real MembraneForceEngine::creaseEnergyNow() const {
+Real MembraneForceEngine::creaseEnergyNow() {
+    writeBack();
     if (!membrane) throw std::runtime_error("MembraneForceEngine: membrane is not set");
     return creaseEnergy(membrane->positions(*Omega::instance().getScene()));
 }
 
-vector<Real> MembraneForceEngine::creaseAngles(const vector<Vector3r>& at) const {
+vector<Real> MembraneForceEngine::creaseAngles(const vector<Vector3r>& at) {
+    writeBack();
     if (!membrane) throw std::runtime_error("MembraneForceEngine: membrane is not set");
     const ::membrane::Points x = membrane->positions(*Omega::instance().getScene(), at);
     vector<Real> angles;

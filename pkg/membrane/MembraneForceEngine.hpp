@@ -1,32 +1,50 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "Membrane.hpp"
-#include "mechanics/Crease.hpp"
+#include "kernels/Sweep.hpp"
 #include <core/GlobalEngine.hpp>
 
 namespace yade {
+
+class MembraneLedger;
 
 class MembraneForceEngine : public GlobalEngine {
 public:
     void action() override;
     void postLoad(MembraneForceEngine&);
 
-    /// Positions [m] and velocities [m/s] of the nodes, as this step's forces saw them.
-    const ::membrane::Points& positions() const { return x_; }
-    vector<Vector3r> lastPositions() const { return x_; }
-    const ::membrane::Points& velocities() const { return v_; }
     /// Step in which the forces were last computed; -1: none yet.
     long lastStep() const { return lastStep_; }
+    int nodeCount() const { return static_cast<int>(states_.size()); }
     const vector<shared_ptr<State>>& states() const { return states_; }
-    /// Forces of this step on each node [N].
-    const ::membrane::Points& creaseForces() const { return creaseForces_; }
-    const ::membrane::Points& dampingForces() const { return dampingForces_; }
-    const ::membrane::Points& dragForces() const { return dragForces_; }
+    /// Position [m] and velocity [m/s] of a node, as the last step's forces saw them.
+    virtual Vector3r positionSeen(int node) const { return sweep_.x.at(node); }
+    virtual Vector3r velocitySeen(int node) const { return sweep_.v.at(node); }
+    vector<Vector3r> lastPositions() const;
+    vector<Vector3r> creaseForces() const { return ofNodes(&::membrane::Sweep::creaseForce); }
+    vector<Vector3r> dampingForces() const { return ofNodes(&::membrane::Sweep::dampingForce); }
+    vector<Vector3r> dragForces() const { return ofNodes(&::membrane::Sweep::dragForce); }
+    boost::python::object lastPositionsBytes() const;
+
+    /// For the ledger: the nodes that YADE's integrator moves, and everything summed over the others.
+    virtual const vector<int>& nodesOfYade() const { return allNodes_; }
+    const ::membrane::Sweep& sweep() const { return sweep_; }
+    /// Power [W] of the forces from outside on those others, at the velocities before and after the last step.
+    virtual std::pair<Real, Real> powerFromOutside() const { return {0., 0.}; }
+    /// Whether the last step made the sums for the ledger.
+    bool madeSums() const { return madeSums_; }
+    void forgetLengths() { keepLengths_ = false; }
+
+    /// Brings the bodies up to date, if this engine moves them itself.
+    virtual void writeBack() {}
+    /// The nodes' present velocities were given by hand: until the next step they count as they are.
+    virtual void forgetVelocities() { seenPositions.clear(); }
+    virtual vector<Vector3r> nodeForces();
 
     Real criticalTimeStep();
     Real creaseEnergy(const ::membrane::Points& x) const;
-    Real creaseEnergyNow() const;
-    vector<Real> creaseAngles(const vector<Vector3r>& at) const;
+    Real creaseEnergyNow();
+    vector<Real> creaseAngles(const vector<Vector3r>& at);
     ::membrane::CreaseLaw law() const;
 
     // clang-format off
@@ -44,11 +62,8 @@ public:
         ((Real, airDensity, 0., Attr::triggerPostLoad, "Density of the air [kg/m³], >= 0; 0: none."))
         ((bool, forceTimeStep, false, , "Run even if O.dt is above criticalTimeStep()."))
         ((int, timeStepCheckPeriod, 5000, Attr::triggerPostLoad, "Steps between two checks of O.dt against criticalTimeStep(), which changes with the state; also checked when O.dt changes. > 0."))
-        ((vector<Vector3r>, seenPositions, , , "Positions [m] of the nodes in the last step; empty it after giving nodes other velocities, which then count as they are."))
+        ((vector<Vector3r>, seenPositions, , Attr::readonly, "Positions [m] of the nodes in the last step."))
         ((vector<Vector3r>, seenVelocities, , Attr::readonly, "Velocities [m/s] of the nodes in the last step."))
-        ((Real, creasePower, 0., Attr::readonly, "Power of the crease forces in the last step [W], at the velocities half a step before."))
-        ((Real, dampingPower, 0., Attr::readonly, "Power of the damping forces in the last step [W], <= 0."))
-        ((Real, dragPower, 0., Attr::readonly, "Power of the air drag in the last step [W], <= 0."))
         ,
         ,
         .def("criticalTimeStep", &MembraneForceEngine::criticalTimeStep, "Estimate of the critical time step [s] in the present state, from the actual "
@@ -58,28 +73,50 @@ public:
             "closed, pi flat, below 0 passed through itself; at given positions of the N nodes [m], default: the present ones.")
         .def("lastPositions", &MembraneForceEngine::lastPositions, "Positions [m] of the nodes as the last step's forces saw them, before the "
             "integrator moved them; empty before the first step.")
+        .def("lastPositionsBytes", &MembraneForceEngine::lastPositionsBytes, "The same as bytes, 3 N doubles, for numpy.frombuffer.")
+        .def("creaseForces", &MembraneForceEngine::creaseForces, "Forces of the creases on the nodes in the last step [N].")
+        .def("dampingForces", &MembraneForceEngine::dampingForces, "Forces of damping on the nodes in the last step [N].")
+        .def("dragForces", &MembraneForceEngine::dragForces, "Forces of air drag on the nodes in the last step [N].")
+        .def("nodeForces", &MembraneForceEngine::nodeForces, "All forces on the nodes [N] in a step in which nothing was moved, gravity apart.")
+        .def("forgetVelocities", &MembraneForceEngine::forgetVelocities, "Call it after giving nodes other velocities: until the next step they count as they are.")
+        .def("writeBack", &MembraneForceEngine::writeBack, "Bring the bodies up to date, in the middle of a run with an exchangePeriod above 1.")
     );
     // clang-format on
 
-private:
+protected:
     vector<shared_ptr<State>> states_;
-    vector<Real> damping_; ///< c of each side [N s/m]
-    ::membrane::Points x_, v_;
-    ::membrane::Points u_; ///< velocities [m/s] at the time of x_, of which damping and drag are functions
-    ::membrane::Points creaseForces_, dampingForces_, dragForces_;
+    vector<int> allNodes_;
+    ::membrane::Sweep sweep_;
+    long lastStep_ = -1;
+    bool madeSums_ = false;
+
+    virtual void prepare(Scene& now);
+    virtual void gather();
+    virtual void computeForces();
+    /// Builds the tables of the forces for nodes of which `owned` are moved by the sweep.
+    void prepareSweep(const vector<char>& owned, int parts);
+    /// The ledger that counts this engine's energies in this step, or none.
+    MembraneLedger* ledger() const;
+    /// What the sweep needs to begin or continue a ledger's sums.
+    void continueLedger(const MembraneLedger* ledger);
+    [[noreturn]] void stopDiverged() const;
+
+private:
     const Scene* preparedFor_ = nullptr;
     Real checkedStep_ = -1.;
-    long lastStep_ = -1;
+    bool keepLengths_ = false; ///< the sweep's lengths are those of the ledger's last step
 
-    void prepare(Scene& now);
-    void gather();
-    void centreVelocities();
     void checkTimeStep();
-    void addCreases();
-    void addDamping();
-    void addDrag();
-    void scatter() const;
+    vector<Real> dampingCoefficients() const;
+    vector<Vector3r> ofNodes(Vector3r (::membrane::Sweep::*force)(int) const) const;
 };
 REGISTER_SERIALIZABLE(MembraneForceEngine);
+
+/// Whether a node cannot move but as it is driven.
+bool isHeld(const State& state);
+
+/// Velocity [m/s] at the time of the position, of a node seen elsewhere in the step before. With one half a step old,
+/// damping and drag would be of first order in the step, and a spinning membrane under a false tension.
+Vector3r centredVelocity(const State& state, const Vector3r& seenPosition, const Vector3r& seenVelocity, Real dt);
 
 } // namespace yade

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneLedger.hpp"
-#include "mechanics/SideForce.hpp"
 #include <cmath>
 #include <core/Scene.hpp>
 
@@ -27,44 +26,34 @@ Vector3r freeDirections(const State& state) {
 void MembraneLedger::action() {
     if (!forces || !forces->membrane) throw std::runtime_error("MembraneLedger: forces is not set, or has no membrane");
     const Membrane& membrane = *forces->membrane;
-    const ::membrane::Points& x = forces->positions();
-    if (x.empty() || forces->lastStep() != scene->iter)
+    if (forces->lastStep() != scene->iter || !forces->madeSums())
         throw std::runtime_error("MembraneLedger: its MembraneForceEngine must run in the same step, before it");
-
-    // Elastic forces once more, so that what other engines put on the nodes is known by difference.
-    const auto& sides = membrane.rest().sides;
-    ::membrane::Points elasticForces(x.size(), Vector3r::Zero());
-    elastic = 0.;
-    if (!started) lastLengths.assign(sides.size(), 0.);
-    if (lastLengths.size() != sides.size()) throw std::runtime_error("MembraneLedger: forces has another membrane now");
-    for (std::size_t i = 0; i < sides.size(); ++i) {
-        const ::membrane::Side& s = sides[i];
-        const Vector3r span = x[s.b] - x[s.a];
-        const Real length = span.norm();
-        if (started) kinkError += ::membrane::kinkEnergy(lastLengths[i], length, s.stiffness, s.restLength, s.critical);
-        lastLengths[i] = length;
-        elastic += ::membrane::sideEnergy(length, s.stiffness, s.restLength, s.critical);
-        if (!(length > 0.)) continue;
-        const Vector3r force = ::membrane::sideTension(length, s.stiffness, s.restLength, s.critical) / length * span;
-        elasticForces[s.a] += force;
-        elasticForces[s.b] -= force;
-    }
+    const ::membrane::Sweep& sweep = forces->sweep();
+    if (started && !lastLengths.empty() && lastLengths.size() != membrane.rest().sides.size())
+        throw std::runtime_error("MembraneLedger: forces has another membrane now");
+    elastic = sweep.sideEnergies().elastic;
+    if (started) kinkError += sweep.sideEnergies().kink;
 
     // Work from the step before to this one: mean of both forces times the velocity between them.
-    kinetic = potential = angularMomentum = 0.;
-    vector<Real> arriving(5, 0.), leaving(5, 0.);
-    Real torque = 0.;
+    const ::membrane::MotionSums& moved = sweep.motionSums();
+    const auto [arrivingOutside, leavingOutside] = forces->powerFromOutside();
+    kinetic = moved.kinetic;
+    potential = moved.potential;
+    angularMomentum = moved.angularMomentum;
+    Real torque = moved.torque;
+    vector<Real> arriving{moved.arriving[0], moved.arriving[1], moved.arriving[2], 0., arrivingOutside};
+    vector<Real> leaving{moved.leaving[0], moved.leaving[1], moved.leaving[2], 0., leavingOutside};
     const auto& states = forces->states();
-    for (std::size_t i = 0; i < x.size(); ++i) {
+    for (const int i : forces->nodesOfYade()) {
         const State& state = *states[i];
+        const Vector3r x = forces->positionSeen(i);
         const Vector3r free = freeDirections(state), held = Vector3r::Ones() - free;
         const Vector3r total = scene->forces.getForce(membrane.bodyIds[i]);
-        const Vector3r &fCrease = forces->creaseForces()[i], &fDamping = forces->dampingForces()[i],
-                       &fDrag = forces->dragForces()[i];
-        const Vector3r internal = elasticForces[i] + fCrease + fDamping + fDrag, other = total - internal;
+        const Vector3r fCrease = sweep.creaseForce(i), fDamping = sweep.dampingForce(i), fDrag = sweep.dragForce(i);
+        const Vector3r internal = sweep.elasticForce(i) + fCrease + fDamping + fDrag, other = total - internal;
         const Vector3r after = state.vel;
         const Vector3r before =
-            free.isZero() ? turnedBack(after, state.angVel[2] * scene->dt) : forces->velocities()[i];
+            free.isZero() ? turnedBack(after, state.angVel[2] * scene->dt) : forces->velocitySeen(i);
         const auto addPowers = [&](vector<Real>& powers, const Vector3r& v) {
             powers[0] += fCrease.dot(v);
             powers[1] += fDamping.dot(v);
@@ -75,12 +64,12 @@ void MembraneLedger::action() {
         addPowers(arriving, before);
         addPowers(leaving, after);
         kinetic += 0.5 * state.mass * before.cwiseProduct(free).dot(after);
-        potential -= state.mass * gravity.cwiseProduct(free).dot(x[i]);
+        potential -= state.mass * gravity.cwiseProduct(free).dot(x);
         const Vector3r momentum = state.mass * 0.5 * (before + after).cwiseProduct(free);
-        angularMomentum += x[i][0] * momentum[1] - x[i][1] * momentum[0];
+        angularMomentum += x[0] * momentum[1] - x[1] * momentum[0];
         // The integrator keeps gravity out of the scene's forces.
         const Vector3r pull = (total + state.mass * gravity).cwiseProduct(free);
-        torque += x[i][0] * pull[1] - x[i][1] * pull[0];
+        torque += x[0] * pull[1] - x[1] * pull[0];
     }
     time = scene->time;
 
@@ -99,7 +88,11 @@ void MembraneLedger::action() {
 }
 
 Real MembraneLedger::crease() const {
-    return forces && forces->beta > 0. && !forces->positions().empty() ? forces->creaseEnergy(forces->positions()) : 0.;
+    return forces && forces->beta > 0. && forces->lastStep() >= 0 ? forces->creaseEnergy(forces->lastPositions()) : 0.;
+}
+
+void MembraneLedger::preSave(MembraneLedger&) {
+    if (started && forces && forces->madeSums()) lastLengths = forces->sweep().lengths();
 }
 
 Real MembraneLedger::balance() const {

@@ -8,6 +8,8 @@ namespace yade {
 class MembraneLedger : public GlobalEngine {
 public:
     void action() override;
+    /// Fetches what a saved ledger needs to go on.
+    void preSave(MembraneLedger&);
     Real balance() const;
     Real unexplained() const { return balance() - kinkError; }
     Real crease() const;
@@ -40,7 +42,7 @@ public:
         ((Real, angularImpulse, 0., Attr::readonly, "Integral of the torque about z of all forces on the free nodes [N m s]."))
         ((Real, initialAngularMomentum, 0., Attr::readonly, "Angular momentum about z at the first step [N m s]."))
         ((vector<Real>, lastPowers, , (Attr::readonly | Attr::hidden), "Powers [W] of crease, damping, drag, driven nodes, others at the velocities after the last step."))
-        ((vector<Real>, lastLengths, , (Attr::readonly | Attr::hidden), "Lengths of the sides [m] in the last step."))
+        ((vector<Real>, lastLengths, , (Attr::readonly | Attr::hidden), "Lengths of the sides [m] in the last step, as of the last save."))
         ((Real, lastTorque, 0., (Attr::readonly | Attr::hidden), "Torque about z [N m] in the last step."))
         ,
         ,

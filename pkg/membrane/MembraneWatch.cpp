@@ -67,6 +67,8 @@ Real MembraneWatch::allEnergy() const {
 void MembraneWatch::keep() {
     std::swap(newer_, older_);
     newer_.bodies.clear();
+    ledger->forces->writeBack();
+    ledger->preSave(*ledger);
     for (const auto& body : *scene->bodies)
         newer_.bodies.push_back({body->id, body->state->pos, body->state->vel, body->state->angVel, body->state->ori});
     newer_.ledger = shared_ptr<MembraneLedger>(new MembraneLedger(*ledger));
@@ -85,6 +87,7 @@ Real MembraneWatch::restore() {
         state.angVel = was.angVel;
     }
     *ledger = *kept.ledger;
+    ledger->forces->forgetLengths();
     scene->time = kept.time;
     scene->forces.reset(scene->iter);
     lowest.clear();
@@ -95,7 +98,9 @@ Real MembraneWatch::restore() {
 void MembraneWatch::stop(int part, Real gain) const {
     MembraneForceEngine& forces = *ledger->forces;
     const Membrane& membrane = *forces.membrane;
-    const ::membrane::Points &x = forces.positions(), &v = forces.velocities();
+    const ::membrane::Points x = forces.lastPositions();
+    ::membrane::Points v;
+    for (int i = 0; i < forces.nodeCount(); ++i) v.push_back(forces.velocitySeen(i));
     const auto before = [&](int node) -> Vector3r { return x[node] - scene->dt * v[node]; };
 
     // Where most energy moved in the last step; of the creases, where most is stored.
@@ -109,8 +114,9 @@ void MembraneWatch::stop(int part, Real gain) const {
             if (!(energy <= most)) most = energy, where = "crease " + pairText(membrane, c.a, c.b);
         }
     } else if (part == dragPart) {
+        const vector<Vector3r> drag = forces.dragForces();
         for (std::size_t i = 0; i < x.size(); ++i) {
-            const Real power = forces.dragForces()[i].norm() * v[i].norm();
+            const Real power = drag[i].norm() * v[i].norm();
             if (!(power <= most)) most = power, where = "node " + std::to_string(i);
         }
     } else {

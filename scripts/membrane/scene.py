@@ -329,9 +329,9 @@ def release(sail, omega, held):
     sail.hold(held, False)
     scene = yade.Omega()
     set_spin(sail, omega, before=0)
-    sail.forces.seenPositions = []
+    sail.forces.forgetVelocities()
     forces = compute_forces(sail)
-    sail.forces.seenPositions = []
+    sail.forces.forgetVelocities()
     gravity = np.array(sail.newton.gravity)
     for i, force in zip(sail.membrane.bodyIds, forces):
         state = scene.bodies[i].state

@@ -50,7 +50,7 @@ class Model:
         positions = np.asarray(positions, dtype=float).tolist()
         for state, x, v in zip(self.states, positions, np.asarray(velocities).tolist()):
             state.pos, state.vel = x, v
-        self.forces.seenPositions = []
+        self.forces.forgetVelocities()
 
     def positions(self):
         """Present positions (N, 3) [m]."""

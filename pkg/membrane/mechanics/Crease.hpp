@@ -43,19 +43,18 @@ constexpr double collapsedFraction = 1e-6;
 /// Levers 1/l_AB in (8) and 1/height in the conservative law stay below 1/(this fraction of the rest length).
 constexpr double leverFloor = 0.05;
 
-/// Angle and directions of a crease from its nodes' positions [m].
+/// Angle and directions of a crease from its nodes' positions [m]. Without branches, so that loops over creases are
+/// vectorised.
 inline CreaseState creaseState(const CreaseRest& rest, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                const Eigen::Vector3d& c, const Eigen::Vector3d& d) {
     CreaseState s;
-    s.openC.setZero();
-    s.openD.setZero();
-    Eigen::Vector3d axis = b - a;
-    const double length = axis.norm();
-    if (!(length > collapsedFraction * rest.length)) return s;
-    axis /= length;
-
-    const double alongC = (c - a).dot(axis), alongD = (d - a).dot(axis);
-    const Eigen::Vector3d armC = (c - a) - alongC * axis, armD = (d - a) - alongD * axis;
+    const Eigen::Vector3d span = b - a, toC = c - a, toD = d - a;
+    const double length = span.norm();
+    const bool whole = length > collapsedFraction * rest.length;
+    const double inverse = whole ? 1. / length : 0.; // without an axis there is neither angle nor force
+    const Eigen::Vector3d axis = inverse * span;
+    const double alongC = toC.dot(axis), alongD = toD.dot(axis);
+    const Eigen::Vector3d armC = toC - alongC * axis, armD = toD - alongD * axis;
     s.heightC = armC.norm();
     s.heightD = armD.norm();
     const double lever = std::max(length, leverFloor * rest.length);
@@ -64,11 +63,13 @@ inline CreaseState creaseState(const CreaseRest& rest, const Eigen::Vector3d& a,
 
     // The branch cut of atan2 is moved from pi (flat) to -pi/2, away from both closed and flat.
     constexpr double pi = 3.14159265358979323846;
-    s.theta = std::atan2(rest.sign * axis.dot(armC.cross(armD)), armC.dot(armD));
-    if (s.theta <= -0.5 * pi) s.theta += 2. * pi;
+    const double angle = atan2(rest.sign * axis.dot(armC.cross(armD)), armC.dot(armD));
+    s.theta = whole ? (angle <= -0.5 * pi ? angle + 2. * pi : angle) : 0.;
 
-    if (s.heightC > collapsedFraction * rest.heightC) s.openC = (-rest.sign / s.heightC) * axis.cross(armC);
-    if (s.heightD > collapsedFraction * rest.heightD) s.openD = (rest.sign / s.heightD) * axis.cross(armD);
+    const double inverseC = s.heightC > collapsedFraction * rest.heightC ? 1. / s.heightC : 0.;
+    const double inverseD = s.heightD > collapsedFraction * rest.heightD ? 1. / s.heightD : 0.;
+    s.openC = (-rest.sign * inverseC) * axis.cross(armC);
+    s.openD = (rest.sign * inverseD) * axis.cross(armD);
     return s;
 }
 

@@ -12,4 +12,10 @@ inline double dampingCoefficient(double ratio, double stiffness, double meanMass
     return 2. * ratio * std::sqrt(std::max(0., stiffness) * meanMass);
 }
 
+/// Damping tension [N] of a taut cable: together with its elastic tension never below 0, for a cable cannot push.
+/// \param coefficient c [N s/m];  \param rate of its length [m/s];  \param tension elastic [N] >= 0
+inline double cableDamping(double coefficient, double rate, double tension) {
+    return std::max(coefficient * rate, -tension);
+}
+
 } // namespace membrane

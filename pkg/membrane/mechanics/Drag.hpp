@@ -6,12 +6,23 @@
 
 namespace membrane {
 
-/// Air drag [N] on one corner of a triangle, paper equation (10): rho S_n V²/6 against the corner's velocity V,
-/// S_n the area of the triangle projected along V. With a = 2S times the unit normal, S_n V² = |a·V| |V| / 2.
-/// \param airDensity rho [kg/m³] >= 0;  \param doubleArea a [m²];  \param velocity V [m/s]
+/// What one triangle adds to the drag weight of a corner [m³/s]: |a·V|, a = 2S times the unit normal, V the corner's
+/// velocity. \param doubleArea a [m²];  \param velocity V [m/s]
+inline double dragWeight(const Eigen::Vector3d& doubleArea, const Eigen::Vector3d& velocity) {
+    return std::abs(doubleArea.dot(velocity));
+}
+
+/// Air drag [N] on a node, paper equation (10) summed over its triangles: rho S_n V²/6 each, against the velocity V,
+/// S_n the area of the triangle projected along V: S_n V² = |a·V| |V| / 2.
+/// \param airDensity rho [kg/m³] >= 0;  \param weight sum of dragWeight() [m³/s]
+inline Eigen::Vector3d nodeDrag(double airDensity, double weight, const Eigen::Vector3d& velocity) {
+    return -(airDensity / 12.) * weight * velocity;
+}
+
+/// Air drag [N] on one corner of one triangle.
 inline Eigen::Vector3d cornerDrag(double airDensity, const Eigen::Vector3d& doubleArea,
                                   const Eigen::Vector3d& velocity) {
-    return -(airDensity / 12.) * std::abs(doubleArea.dot(velocity)) * velocity;
+    return nodeDrag(airDensity, dragWeight(doubleArea, velocity), velocity);
 }
 
 /// Bound [N s/m] of the slope of cornerDrag() by the velocity, in any direction.

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "CreaseKernel.hpp"
+#include "BlockTransfer.hpp"
+
+namespace membrane {
+namespace {
+
+struct Constants {
+    const double *length, *heightC, *heightD, *sign;
+};
+
+template <bool conservative>
+inline void compute(int count, const Components (&x)[4], const Constants& c, const CreaseLaw& parameters,
+                    BlockVectors (&force)[4]) {
+    CreaseLaw law = parameters;
+    law.conservative = conservative; // known to the compiler
+    const Components a = x[0], b = x[1], apexC = x[2], apexD = x[3];
+#pragma GCC ivdep
+    for (int e = 0; e < count; ++e) {
+        CreaseRest rest;
+        rest.length = c.length[e];
+        rest.heightC = c.heightC[e];
+        rest.heightD = c.heightD[e];
+        rest.sign = c.sign[e];
+        const CreaseForces f = creaseForces(rest, law, creaseState(rest, a.at(e), b.at(e), apexC.at(e), apexD.at(e)));
+        for (int k = 0; k < 3; ++k) {
+            force[0].component[k][e] = f.a[k];
+            force[1].component[k][e] = f.b[k];
+            force[2].component[k][e] = f.c[k];
+            force[3].component[k][e] = f.d[k];
+        }
+    }
+}
+
+template <bool conservative>
+inline void addBlocks(const CreaseTable& table, const CreaseLaw& law, int group, const Components& x,
+                      const Components& to) {
+    BlockVectors room[4], force[4];
+    for (int i = table.order.groups[group]; i < table.order.groups[group + 1]; ++i) {
+        const Block block = table.order.blocks[i];
+        const int* node[4];
+        for (int k = 0; k < 4; ++k) node[k] = table.order.node[k].data() + block.begin;
+        const Components corners[] = {cornerOf(block, node[0], x, room[0]), cornerOf(block, node[1], x, room[1]),
+                                      cornerOf(block, node[2], x, room[2]), cornerOf(block, node[3], x, room[3])};
+        compute<conservative>(block.end - block.begin, corners,
+                              {table.length.data() + block.begin, table.heightC.data() + block.begin,
+                               table.heightD.data() + block.begin, table.sign.data() + block.begin},
+                              law, force);
+        for (int k = 0; k < 4; ++k) addCorner(block, force[k], node[k], to);
+    }
+}
+
+MEMBRANE_VECTORISED void paperCreases(const CreaseTable& table, const CreaseLaw& law, int group, const Components& x,
+                                      const Components& to) {
+    addBlocks<false>(table, law, group, x, to);
+}
+MEMBRANE_VECTORISED void conservativeCreases(const CreaseTable& table, const CreaseLaw& law, int group,
+                                             const Components& x, const Components& to) {
+    addBlocks<true>(table, law, group, x, to);
+}
+
+} // namespace
+
+CreaseTable creaseTable(const RestState& rest, const Partition& partition) {
+    std::vector<std::array<int, 4>> corners;
+    for (const Crease& c : rest.creases) corners.push_back({c.a, c.b, c.c, c.d});
+    CreaseTable table;
+    table.order = arrange<4>(corners, partition);
+    for (const int e : table.order.element) {
+        const CreaseRest& r = rest.creases[e].rest;
+        table.length.push_back(r.length);
+        table.heightC.push_back(r.heightC);
+        table.heightD.push_back(r.heightD);
+        table.sign.push_back(r.sign);
+    }
+    return table;
+}
+
+void addCreases(const CreaseTable& table, const CreaseLaw& law, int group, const Components& x, const Components& to) {
+    (law.conservative ? conservativeCreases : paperCreases)(table, law, group, x, to);
+}
+
+} // namespace membrane

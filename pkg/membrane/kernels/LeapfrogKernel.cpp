@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "LeapfrogKernel.hpp"
+#include "../mechanics/Drag.hpp"
+#include "Vectorised.hpp"
+
+namespace membrane {
+namespace {
+
+/// NewtonIntegrator's local damping of one component of the acceleration.
+inline double dampedLocally(double acceleration, double velocity, double dt, double damping) {
+    const double power = acceleration * (velocity + 0.5 * dt * acceleration);
+    const double sign = (power > 0. ? 1. : 0.) - (power < 0. ? 1. : 0.);
+    return acceleration * (1. - damping * sign);
+}
+
+/// What each node of a block adds to the sums.
+struct Contributions {
+    enum { kinetic, potential, angularMomentum, torque, arriving, leaving = arriving + 3, count = leaving + 3 };
+    double of[count][blockSize];
+};
+
+template <bool drag, bool local, bool sums>
+inline void moveBlock(int begin, int end, const Motion& m, Contributions& added) {
+    const Components x = m.x, v = m.v, u = m.u, elastic = m.elastic, damping = m.damping, crease = m.crease;
+    double* const weight = m.dragWeight;
+    const double* const mass = m.mass;
+    const double dt = m.dt, density = m.airDensity, share = m.localDamping;
+    const Eigen::Vector3d gravity = m.gravity;
+#pragma GCC ivdep
+    for (int i = begin; i < end; ++i) {
+        const Eigen::Vector3d place = x.at(i), before = v.at(i);
+        Eigen::Vector3d force = elastic.at(i), forceOfDrag = Eigen::Vector3d::Zero();
+        if (drag) {
+            forceOfDrag = nodeDrag(density, weight[i], u.at(i));
+            force += forceOfDrag;
+            weight[i] = 0.;
+        }
+        if (sums) force += damping.at(i) + crease.at(i);
+        Eigen::Vector3d acceleration = (1. / mass[i]) * force + gravity;
+        if (local)
+            for (int k = 0; k < 3; ++k) acceleration[k] = dampedLocally(acceleration[k], before[k], dt, share);
+        const Eigen::Vector3d after = before + dt * acceleration;
+        if (sums) {
+            const int e = i - begin;
+            const Eigen::Vector3d mean = 0.5 * (before + after), pull = force + mass[i] * gravity;
+            added.of[Contributions::kinetic][e] = 0.5 * mass[i] * before.dot(after);
+            added.of[Contributions::potential][e] = -mass[i] * gravity.dot(place);
+            added.of[Contributions::angularMomentum][e] = mass[i] * (place[0] * mean[1] - place[1] * mean[0]);
+            added.of[Contributions::torque][e] = place[0] * pull[1] - place[1] * pull[0];
+            added.of[Contributions::arriving][e] = crease.at(i).dot(before);
+            added.of[Contributions::arriving + 1][e] = damping.at(i).dot(before);
+            added.of[Contributions::arriving + 2][e] = forceOfDrag.dot(before);
+            added.of[Contributions::leaving][e] = crease.at(i).dot(after);
+            added.of[Contributions::leaving + 1][e] = damping.at(i).dot(after);
+            added.of[Contributions::leaving + 2][e] = forceOfDrag.dot(after);
+            damping.set(i, Eigen::Vector3d::Zero());
+            crease.set(i, Eigen::Vector3d::Zero());
+        }
+        elastic.set(i, Eigen::Vector3d::Zero());
+        v.set(i, after);
+        u.set(i, 1.5 * after - 0.5 * before);
+        x.set(i, place + dt * after);
+    }
+}
+
+template <bool drag, bool local, bool sums> inline double move(int begin, int end, const Motion& m, MotionSums* total) {
+    Contributions added;
+    double lost = 0.; // 0 times anything finite; NaN otherwise
+    for (int first = begin; first < end; first += blockSize) {
+        const int last = std::min(end, first + blockSize);
+        moveBlock<drag, local, sums>(first, last, m, added);
+        const double *const x = m.x.x, *const y = m.x.y, *const z = m.x.z;
+#pragma omp simd reduction(+ : lost)
+        for (int i = first; i < last; ++i) lost += 0. * (x[i] + y[i] + z[i]);
+        if (!sums) continue;
+        double sum[Contributions::count];
+        for (int k = 0; k < Contributions::count; ++k) {
+            double part = 0.;
+#pragma omp simd reduction(+ : part)
+            for (int e = 0; e < last - first; ++e) part += added.of[k][e];
+            sum[k] = part;
+        }
+        total->kinetic += sum[Contributions::kinetic];
+        total->potential += sum[Contributions::potential];
+        total->angularMomentum += sum[Contributions::angularMomentum];
+        total->torque += sum[Contributions::torque];
+        for (int k = 0; k < 3; ++k) {
+            total->arriving[k] += sum[Contributions::arriving + k];
+            total->leaving[k] += sum[Contributions::leaving + k];
+        }
+    }
+    return lost;
+}
+
+#define MEMBRANE_MOVE(name, ...)                                                                                       \
+    MEMBRANE_VECTORISED double name(int begin, int end, const Motion& m, MotionSums* total) {                          \
+        return move<__VA_ARGS__>(begin, end, m, total);                                                                \
+    }
+MEMBRANE_MOVE(freely, false, false, false)
+MEMBRANE_MOVE(inAir, true, false, false)
+MEMBRANE_MOVE(damped, false, true, false)
+MEMBRANE_MOVE(dampedInAir, true, true, false)
+MEMBRANE_MOVE(freelyWithSums, false, false, true)
+MEMBRANE_MOVE(inAirWithSums, true, false, true)
+MEMBRANE_MOVE(dampedWithSums, false, true, true)
+MEMBRANE_MOVE(dampedInAirWithSums, true, true, true)
+#undef MEMBRANE_MOVE
+
+} // namespace
+
+double moveNodes(int begin, int end, const Motion& m, MotionSums* sums) {
+    using Move = double (*)(int, int, const Motion&, MotionSums*);
+    static const Move moves[2][2][2] = {{{freely, inAir}, {damped, dampedInAir}},
+                                        {{freelyWithSums, inAirWithSums}, {dampedWithSums, dampedInAirWithSums}}};
+    return moves[sums != nullptr][m.localDamping > 0.][m.dragWeight != nullptr](begin, end, m, sums);
+}
+
+} // namespace membrane
