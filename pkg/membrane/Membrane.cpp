@@ -194,6 +194,23 @@ void Membrane::addInteractions() {
     }
 }
 
+void Membrane::removeInteractions() {
+    if (bodyIds.empty()) return;
+    InteractionContainer& interactions = *Omega::instance().getScene()->interactions;
+    for (const ::membrane::Side& side : rest_.sides) {
+        const shared_ptr<Interaction>& link = interactions.find(bodyIds[side.a], bodyIds[side.b]);
+        if (link && dynamic_cast<MembranePhys*>(link->phys.get()))
+            interactions.erase(link->getId1(), link->getId2(), link->linIx);
+    }
+}
+
+bool Membrane::hasInteractions() const {
+    if (bodyIds.empty() || rest_.sides.empty()) return false;
+    const ::membrane::Side& side = rest_.sides.front();
+    const auto& link = Omega::instance().getScene()->interactions->find(bodyIds[side.a], bodyIds[side.b]);
+    return link && dynamic_cast<MembranePhys*>(link->phys.get());
+}
+
 Real Membrane::elasticEnergy() const {
     const shared_ptr<Scene> scene = Omega::instance().getScene();
     const ::membrane::Points x = positions(*scene);

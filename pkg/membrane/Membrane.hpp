@@ -28,6 +28,8 @@ public:
     vector<int> addBodies(const vector<Vector3r>& at, Real radius);
     vector<int> addBodiesPy(const boost::python::object& at, Real radius);
     void addInteractions();
+    void removeInteractions();
+    bool hasInteractions() const;
     Real elasticEnergy() const;
 
     boost::python::list sidesPy() const;
@@ -72,6 +74,8 @@ public:
             ":param positions: where to put the nodes [m], N points; default: the rest positions\n"
             ":param radius: of the spheres [m], > 0; it counts only for drawing and for contacts of bounded bodies")
         .def("addInteractions", &Membrane::addInteractions, "Add one interaction a side, real from the start. Call addBodies first.")
+        .def("removeInteractions", &Membrane::removeInteractions, "Remove the interactions of the sides, if there are any.")
+        .add_property("hasInteractions", &Membrane::hasInteractions, "Whether the sides are interactions of the scene.")
         .def("elasticEnergy", &Membrane::elasticEnergy, "Strain energy of all sides in the scene's present state [J].")
         .def("lengths", &Membrane::lengths, (boost::python::arg("positions") = vector<Vector3r>()), "Length of each side [m] at given positions of "
             "the N nodes [m]; default: the present ones.")

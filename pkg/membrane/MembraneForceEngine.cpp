@@ -77,7 +77,6 @@ void MembraneForceEngine::action() {
     if (preparedFor_ != scene) {
         prepare(*scene);
         checkedStep_ = -1.;
-        keepLengths_ = false;
         preparedFor_ = scene;
     }
     gather();
@@ -86,7 +85,6 @@ void MembraneForceEngine::action() {
     lastStep_ = scene->iter;
 }
 
-/// Looks up the bodies and computes what stays the same while it runs.
 void MembraneForceEngine::prepare(Scene& now) {
     if (!membrane) throw std::runtime_error("MembraneForceEngine: membrane is not set");
     states_ = membrane->states(now);
@@ -97,7 +95,7 @@ void MembraneForceEngine::prepare(Scene& now) {
         if (!(states_[i]->mass > 0.) || !std::isfinite(states_[i]->mass))
             throw std::runtime_error("Membrane: the mass " + std::to_string(states_[i]->mass) + " kg of body #" +
                                      std::to_string(membrane->bodyIds[i]) + " must be finite and > 0");
-    prepareSweep(vector<char>(states_.size(), false), 1);
+    arrange();
 }
 
 void MembraneForceEngine::prepareSweep(const vector<char>& owned, int parts) {
@@ -108,7 +106,9 @@ void MembraneForceEngine::prepareSweep(const vector<char>& owned, int parts) {
     laws.crease = law();
     laws.airDensity = airDensity;
     laws.damping = dampingCoefficients();
+    const vector<Real> lengths = sweep_.lengths();
     sweep_.prepare(membrane->rest(), membrane->triangles, laws, masses, owned, parts);
+    if (lengths.size() == membrane->rest().sides.size()) sweep_.setLengths(lengths);
 }
 
 vector<Real> MembraneForceEngine::dampingCoefficients() const {

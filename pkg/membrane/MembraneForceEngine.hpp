@@ -12,6 +12,7 @@ class MembraneForceEngine : public GlobalEngine {
 public:
     void action() override;
     void postLoad(MembraneForceEngine&);
+    virtual void preSave(MembraneForceEngine&) {}
 
     /// Step in which the forces were last computed; -1: none yet.
     long lastStep() const { return lastStep_; }
@@ -90,7 +91,10 @@ protected:
     long lastStep_ = -1;
     bool madeSums_ = false;
 
+    /// Looks up the bodies and computes what stays the same while it runs.
     virtual void prepare(Scene& now);
+    /// Decides which nodes the sweep moves, and calls prepareSweep().
+    virtual void arrange() { prepareSweep(vector<char>(states_.size(), false), 1); }
     virtual void gather();
     virtual void computeForces();
     /// Builds the tables of the forces for nodes of which `owned` are moved by the sweep.

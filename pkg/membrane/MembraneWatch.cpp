@@ -78,6 +78,7 @@ void MembraneWatch::keep() {
 Real MembraneWatch::restore() {
     const Kept& kept = older_.ledger ? older_ : newer_;
     if (!kept.ledger) throw std::runtime_error("MembraneWatch: no state was kept yet");
+    ledger->forces->writeBack();
     for (const BodyState& was : kept.bodies) {
         if (!scene->bodies->exists(was.id)) continue;
         State& state = *(*scene->bodies)[was.id]->state;

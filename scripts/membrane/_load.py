@@ -16,6 +16,7 @@ CLASSES = (
     "Ip2_MembraneMat_MembraneMat_MembranePhys",
     "Law2_MembraneGeom_MembranePhys_Buckling",
     "MembraneForceEngine",
+    "MembraneIntegrator",
     "CentrifugalField",
     "MembraneLedger",
     "MembraneTimeStepper",

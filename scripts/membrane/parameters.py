@@ -97,6 +97,16 @@ class SailParameters:
     energy_tolerance: float = _parameter(
         0.1, "-", RUN, "energy from nowhere, over all energy, that stops the run", above=True
     )
+    path: str = _parameter(
+        "fused",
+        "-",
+        RUN,
+        "who moves the nodes: law2, YADE's loops, the reference; fused, one engine, faster",
+        choices=("law2", "fused"),
+    )
+    exchange_period: int = _parameter(
+        1, "-", RUN, "path fused: steps between two updates of YADE's bodies", least=1
+    )
     force_time_step: bool = _parameter(False, "-", RUN, "run even above the critical time step")
 
     def __post_init__(self):

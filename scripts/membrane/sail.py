@@ -54,6 +54,7 @@ def build(p):
         pointMasses=masses.tolist(),
         alpha=p.alpha,
         alphaCrease=p.alpha_crease,
+        interactions=p.path == "law2",
         cableStiffness=p.tether_stiffness,
         cableDensity=p.tether_density,
     )
@@ -63,6 +64,8 @@ def build(p):
     bodies = np.array(membrane.bodyIds)
     sail = scene.set_engines(
         membrane,
+        path=p.path,
+        exchange_period=p.exchange_period,
         driven=facets + bodies[mesh.anchors].tolist(),
         touching=bodies[np.setdiff1d(mesh.tether_nodes, mesh.anchors)].tolist(),
         omega=p.omega,

@@ -12,6 +12,8 @@ from .progress import stages
 LARGE = 100_000  # nodes: adding so many takes about a second, so that progress is shown
 ADDING = {"rest state": 2, "bodies": 2, "interactions": 6}  # stages and their shares of the time
 
+PATHS = ("law2", "fused")
+
 _plugin = _load.load()
 
 
@@ -32,6 +34,8 @@ class MembraneScene:
         Dead during spin-up.
     watch : MembraneWatch or None
         Stops a run that goes wrong; rests while the ledger is dead.
+    resetter : ForceResetter
+        Dead, like `newton`, as long as a fused membrane is alone in the scene.
     driven : list of int
         Ids of the bodies that turn with the spool.
     """
@@ -43,12 +47,28 @@ class MembraneScene:
     newton: object
     ledger: object
     watch: object = None
+    resetter: object = None
     driven: list = field(default_factory=list)
 
     def positions(self):
         """Present positions of the nodes, (N, 3) [m]."""
         bodies = yade.Omega().bodies
         return np.array([bodies[i].state.pos for i in self.membrane.bodyIds])
+
+    def share_loops(self):
+        """Let YADE's own loops over bodies run: something else than free nodes needs them."""
+        self.resetter.dead = self.newton.dead = False
+
+    @property
+    def fused(self):
+        """Whether the nodes are moved by a MembraneIntegrator."""
+        return hasattr(self.forces, "exchangePeriod")
+
+    def set_damping(self, damping):
+        """Set the local damping [-] of the integrators, in [0, 1)."""
+        self.newton.damping = damping
+        if self.fused:
+            self.forces.damping = damping
 
     def masses(self):
         """Masses of the nodes, (N,) [kg]."""
@@ -57,6 +77,8 @@ class MembraneScene:
     def hold(self, nodes, held=True):
         """Hold `nodes` (ids in the mesh) where they are, or let them go."""
         bodies, ids = yade.Omega().bodies, self.membrane.bodyIds
+        if held and len(nodes):
+            self.share_loops()
         for node in nodes:
             bodies[ids[node]].state.blockedDOFs = "xyzXYZ" if held else "XYZ"
 
@@ -77,6 +99,7 @@ def add_membrane(
     positions=None,
     material=None,
     radius=5e-4,
+    interactions=True,
     **options,
 ):
     """Add a membrane to the scene: one sphere a node, one interaction a side.
@@ -99,6 +122,8 @@ def add_membrane(
         Default: `film()`.
     radius : float
         Of the spheres [m]; it counts only for contacts and for drawing.
+    interactions : bool
+        False: none, as the path "fused" needs none; path "law2" adds them later.
     **options
         Further attributes of Membrane: alpha, alphaCrease, pointMasses, cableStiffness, …
 
@@ -121,14 +146,17 @@ def add_membrane(
         )
         begin("bodies")
         membrane.addBodies(places, radius)
-        begin("interactions")
-        membrane.addInteractions()
+        if interactions:
+            begin("interactions")
+            membrane.addInteractions()
     return membrane
 
 
 def set_engines(
     membrane,
     *,
+    path="law2",
+    exchange_period=1,
     driven=(),
     touching=(),
     omega=0.0,
@@ -147,6 +175,13 @@ def set_engines(
     Parameters
     ----------
     membrane : Membrane
+    path : "law2" or "fused"
+        "law2": sides are interactions, nodes move by NewtonIntegrator; the reference. "fused": the
+        same physics by MembraneIntegrator, several times faster; removes the membrane's
+        interactions.
+    exchange_period : int
+        Of path "fused": steps between two updates of the bodies that touch nothing; see
+        MembraneIntegrator.exchangePeriod.
     driven : sequence of int
         Ids of bodies that turn about z at `omega` [rad/s]: spool facets, ends of tethers.
     touching : sequence of int
@@ -164,8 +199,12 @@ def set_engines(
     -------
     MembraneScene
     """
+    if path not in PATHS:
+        raise ValueError(f"set_engines: path = {path!r} must be one of {', '.join(PATHS)}")
+    fused = path == "fused"
     scene = yade.Omega()
-    forces = _plugin["MembraneForceEngine"](
+    own = {"gravity": gravity, "exchangePeriod": exchange_period} if fused else {}
+    forces = _plugin["MembraneIntegrator" if fused else "MembraneForceEngine"](
         membrane=membrane,
         beta=beta,
         gamma=gamma,
@@ -174,11 +213,17 @@ def set_engines(
         zeta=zeta,
         airDensity=air_density,
         forceTimeStep=force_time_step,
+        **own,
     )
-    geometry = [_plugin["Ig2_Sphere_Sphere_MembraneGeom"]()]
-    physics = [_plugin["Ip2_MembraneMat_MembraneMat_MembranePhys"](membrane=membrane)]
-    laws = [_plugin["Law2_MembraneGeom_MembranePhys_Buckling"]()]
-    collider = []
+    geometry, physics, laws, collider = [], [], [], []
+    if fused:
+        membrane.removeInteractions()
+    else:
+        if not membrane.hasInteractions:
+            membrane.addInteractions()
+        geometry = [_plugin["Ig2_Sphere_Sphere_MembraneGeom"]()]
+        physics = [_plugin["Ip2_MembraneMat_MembraneMat_MembranePhys"](membrane=membrane)]
+        laws = [_plugin["Law2_MembraneGeom_MembranePhys_Buckling"]()]
     if touching:
         for body in (scene.bodies[i] for i in touching):
             body.bounded, body.mask = True, spool.TETHER_MASK
@@ -201,31 +246,50 @@ def set_engines(
     )
     centrifugal = _plugin["CentrifugalField"](membrane=membrane, omega=omega, dead=True)
     newton = yade.NewtonIntegrator(damping=0, gravity=gravity)
+    if fused:
+        newton.mask = forces.nodeMask - 1
     ledger = _plugin["MembraneLedger"](forces=forces, gravity=gravity)
+    resetter = yade.ForceResetter()
+    # A fused membrane with nothing else in the scene needs none of YADE's loops over bodies.
+    alone = fused and not laws and not len(driven) and len(scene.bodies) == len(membrane.bodyIds)
+    resetter.dead = newton.dead = alone
+    watch = []
+    if energy_tolerance is not None:
+        watch = [_plugin["MembraneWatch"](ledger=ledger, tolerance=energy_tolerance)]
     scene.engines = [
-        yade.ForceResetter(),
+        resetter,
         *collider,
         rotation,
-        yade.InteractionLoop(geometry, physics, laws),
+        *([yade.InteractionLoop(geometry, physics, laws)] if laws else []),
         centrifugal,
         forces,
         newton,
         ledger,
+        *watch,
     ]
-    watch = None
-    if energy_tolerance is not None:
-        watch = _plugin["MembraneWatch"](ledger=ledger, tolerance=energy_tolerance)
-        scene.engines = [*scene.engines, watch]
     return MembraneScene(
-        membrane, forces, centrifugal, rotation, newton, ledger, watch, list(driven)
+        membrane,
+        forces,
+        centrifugal,
+        rotation,
+        newton,
+        ledger,
+        watch[0] if watch else None,
+        resetter,
+        list(driven),
     )
 
 
 def advance(steps):
     """Run `steps` steps. Raises what an engine raised."""
-    step = yade.Omega().step  # O.run() would lose what an engine raises before O.wait() is called
-    for _ in range(steps):
-        step()
+    scene = yade.Omega()
+    step = scene.step  # O.run() would lose what an engine raises before O.wait() is called
+    scene.stopAtIter = scene.iter + steps  # lets a MembraneIntegrator know when the run ends
+    try:
+        for _ in range(steps):
+            step()
+    finally:
+        scene.stopAtIter = 0
 
 
 def compute_forces(sail):
@@ -237,12 +301,16 @@ def compute_forces(sail):
     were_dead = [engine.dead for engine in movers]
     for engine in movers:
         engine.dead = True
+    if sail.fused:
+        sail.forces.moveNodes = False
     try:
         yade.Omega().step()
+        return np.array(sail.forces.nodeForces())
     finally:
+        if sail.fused:
+            sail.forces.moveNodes = True
         for engine, was_dead in zip(movers, were_dead):
             engine.dead = was_dead
-    return np.array([yade.Omega().forces.f(i, True) for i in sail.membrane.bodyIds])
 
 
 def set_spin(sail, omega, before=0.5):
@@ -297,7 +365,9 @@ def spin_up(sail, omega, *, tolerance=1e-6, damping=0.3, batch=2000, max_time=5.
     engines = {sail.field: False, sail.rotation: True, sail.ledger: True}
     for engine, dead in engines.items():
         engine.dead = dead
-    sail.field.omega, sail.newton.damping = omega, damping
+    sail.field.omega = omega
+    sail.set_damping(damping)
+    sail.share_loops()
     steps, calm, residual = 0, 0, float("inf")
     while calm < 2:
         if steps * scene.dt > max_time:
@@ -325,7 +395,8 @@ def release(sail, omega, held):
     At the release v = omega x r everywhere. The leapfrog's velocities lie half a step before, and
     follow from the accelerations of the nodes once they are free: v - a dt / 2.
     """
-    sail.field.dead, sail.newton.damping = True, 0
+    sail.field.dead = True
+    sail.set_damping(0)
     sail.hold(held, False)
     scene = yade.Omega()
     set_spin(sail, omega, before=0)

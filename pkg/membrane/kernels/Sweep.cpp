@@ -44,6 +44,7 @@ void add(MotionSums& to, const MotionSums& more) {
 void Sweep::prepare(const RestState& rest, const std::vector<Eigen::Vector3i>& triangles, const Laws& laws,
                     const std::vector<double>& masses, const std::vector<char>& owned, int parts, int chunkSize) {
     rest_ = &rest;
+    sideCount_ = rest.sides.size();
     laws_ = laws;
     mass_.assign(masses.begin(), masses.end());
     const int nodes = static_cast<int>(masses.size());
@@ -267,7 +268,7 @@ void Sweep::clearForces() {
 
 std::vector<double> Sweep::lengths() const {
     if (!hasLengths_) return {};
-    std::vector<double> all(rest_->sides.size());
+    std::vector<double> all(sideCount_);
     for (std::size_t e = 0; e < sides_.order.size(); ++e)
         if (sides_.order.element[e] >= 0) all[sides_.order.element[e]] = sides_.length[e];
     for (std::size_t i = 0; i < sides_.cables.size(); ++i) all[sides_.cables[i]] = sides_.cableLength[i];

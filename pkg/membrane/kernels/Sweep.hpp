@@ -82,6 +82,7 @@ private:
     std::vector<int> foreign_; ///< nodes that are not owned, ascending
     Coordinates elastic_, damping_, crease_;
     Array dragWeight_;
+    std::size_t sideCount_ = 0;
     bool hasLengths_ = false;
     bool moved_ = true; ///< whether the last step did
 

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "MembraneIntegrator.hpp"
+#include "MembraneLedger.hpp"
+#include <algorithm>
+#include <core/BodyContainer.hpp>
+#include <core/Omega.hpp>
+#include <core/Scene.hpp>
+#include <omp.h>
+
+namespace yade {
+
+YADE_PLUGIN((MembraneIntegrator));
+
+namespace {
+
+/// A thread with fewer nodes than this costs more time than it saves.
+constexpr int nodesOfThread = 4096;
+
+constexpr int maskByDefault = 1;
+
+} // namespace
+
+void MembraneIntegrator::postLoad(MembraneIntegrator&) {
+    if (!(damping >= 0. && damping < 1.))
+        throw std::invalid_argument("MembraneIntegrator: damping = " + std::to_string(damping) + " must be in [0, 1)");
+    if (exchangePeriod <= 0)
+        throw std::invalid_argument("MembraneIntegrator: exchangePeriod = " + std::to_string(exchangePeriod) +
+                                    " must be > 0");
+}
+
+void MembraneIntegrator::preSave(MembraneForceEngine&) {
+    if (scene_ != Omega::instance().getScene().get()) return;
+    writeBack();
+    centredVelocities.resize(states_.size());
+    for (const int i : allNodes_) centredVelocities[i] = sweep_.u.at(i);
+    seenPositions.assign(states_.size(), Vector3r::Zero());
+    seenVelocities.assign(states_.size(), Vector3r::Zero());
+    for (std::size_t k = 0; k < shared_.size(); ++k) {
+        seenPositions[shared_[k]] = sharedSeenPositions_[k];
+        seenVelocities[shared_[k]] = sharedSeenVelocities_[k];
+    }
+}
+
+void MembraneIntegrator::action() {
+    try {
+        MembraneForceEngine::action();
+    } catch (...) {
+        writeBack();
+        throw;
+    }
+}
+
+/// Whether a node may be moved here: it can touch nothing and is free.
+bool MembraneIntegrator::belongsHere(int node) const {
+    return !bodies_[node]->isBounded() && !(states_[node]->blockedDOFs & State::DOF_XYZ);
+}
+
+void MembraneIntegrator::prepare(Scene& now) {
+    if (!membrane) throw std::runtime_error("MembraneIntegrator: membrane is not set");
+    const bool known = scene_ == &now && sweep_.x.size() == membrane->bodyIds.size();
+    if (known) writeBack();
+    bodies_.clear();
+    for (const int id : membrane->bodyIds) bodies_.push_back(Body::byId(id, &now));
+    MembraneForceEngine::prepare(now);
+    if (known) return;
+
+    scene_ = &now;
+    bodiesCurrent_ = true;
+    const bool saved = centredVelocities.size() == states_.size();
+    for (const int i : allNodes_) {
+        sweep_.x.set(i, states_[i]->pos);
+        sweep_.v.set(i, states_[i]->vel);
+        sweep_.u.set(i, saved ? centredVelocities[i] : states_[i]->vel);
+    }
+    if (saved && seenPositions.size() == states_.size() && seenVelocities.size() == states_.size())
+        for (std::size_t k = 0; k < shared_.size(); ++k) {
+            sharedSeenPositions_[k] = seenPositions[shared_[k]];
+            sharedSeenVelocities_[k] = seenVelocities[shared_[k]];
+        }
+    for (auto* vectors : {&centredVelocities, &seenPositions, &seenVelocities}) vector<Vector3r>().swap(*vectors);
+    syncs_ = 0;
+}
+
+void MembraneIntegrator::arrange() {
+    vector<char> mine(states_.size());
+    vector<Vector3r> seenX, seenV;
+    vector<int> shared;
+    owned_.clear();
+    for (const int i : allNodes_) {
+        mine[i] = belongsHere(i);
+        if (mine[i]) {
+            owned_.push_back(i);
+            bodies_[i]->groupMask = nodeMask;
+            continue;
+        }
+        if (bodies_[i]->groupMask == nodeMask) bodies_[i]->groupMask = maskByDefault;
+        const auto before = std::lower_bound(shared_.begin(), shared_.end(), i);
+        const bool known = before != shared_.end() && *before == i;
+        const std::size_t k = before - shared_.begin();
+        seenX.push_back(known ? sharedSeenPositions_[k] : Vector3r::Constant(NaN)); // NaN: never seen there
+        seenV.push_back(known ? sharedSeenVelocities_[k] : Vector3r::Zero());
+        shared.push_back(i);
+    }
+    shared_.swap(shared);
+    sharedSeenPositions_.swap(seenX);
+    sharedSeenVelocities_.swap(seenV);
+    const int threads = ompThreads > 0 ? ompThreads : omp_get_max_threads();
+    const int worthwhile = std::max(1, static_cast<int>(states_.size()) / nodesOfThread);
+    prepareSweep(mine, ompThreads > 0 ? threads : std::min(threads, worthwhile));
+    integratorChecked_ = false;
+}
+
+/// NewtonIntegrator must move the shared nodes and leave alone the others.
+void MembraneIntegrator::checkIntegrator() const {
+    const Scene& now = *Omega::instance().getScene();
+    bool found = false;
+    for (const auto& engine : now.engines) {
+        if (engine->getClassName() != "NewtonIntegrator") continue;
+        found = !engine->dead;
+        const PyGILState_STATE lock = PyGILState_Ensure(); // engines may run without Python's lock
+        const int mask = boost::python::extract<int>(engine->pyDict()["mask"]);
+        PyGILState_Release(lock);
+        if (mask <= 0 || (mask & nodeMask))
+            throw std::runtime_error("MembraneIntegrator: NewtonIntegrator would move its nodes once more; give it mask=" +
+                                     std::to_string(nodeMask - 1));
+    }
+    if (!found && !shared_.empty())
+        throw std::runtime_error("MembraneIntegrator: " + std::to_string(shared_.size()) +
+                                 " nodes that are bounded or held, node " + std::to_string(shared_.front()) +
+                                 " the first, need a NewtonIntegrator that is not dead after it, with mask=" +
+                                 std::to_string(nodeMask - 1));
+}
+
+void MembraneIntegrator::gather() {
+    const bool otherStep = movedStep > 0. && scene->dt != movedStep;
+    if (bodiesCurrent_) readBodies();
+    readShared();
+    if (forget_ || otherStep)
+        for (const int i : owned_) sweep_.u.set(i, sweep_.v.at(i));
+    forget_ = false;
+    takeForces();
+}
+
+/// Takes over what was changed by hand since the bodies were last brought up to date.
+void MembraneIntegrator::readBodies() {
+    bool same = true;
+    for (const int i : owned_) same = same && belongsHere(i);
+    for (const int i : shared_) same = same && !belongsHere(i);
+    if (!same) arrange();
+    Real probe = 0.;
+    for (const int i : owned_) {
+        const State& state = *states_[i];
+        if (state.pos == sweep_.x.at(i) && state.vel == sweep_.v.at(i)) continue;
+        sweep_.x.set(i, state.pos);
+        sweep_.v.set(i, state.vel);
+        sweep_.u.set(i, state.vel);
+        probe += 0. * (state.pos.sum() + state.vel.sum());
+    }
+    if (!(probe == 0.)) stopDiverged();
+}
+
+void MembraneIntegrator::readShared() {
+    Real probe = 0.;
+    for (std::size_t k = 0; k < shared_.size(); ++k) {
+        const int i = shared_[k];
+        const State& state = *states_[i];
+        sweep_.x.set(i, state.pos);
+        sweep_.v.set(i, state.vel);
+        sweep_.u.set(i, forget_ ? state.vel
+                                : centredVelocity(state, sharedSeenPositions_[k], sharedSeenVelocities_[k], scene->dt));
+        sharedSeenPositions_[k] = state.pos;
+        sharedSeenVelocities_[k] = state.vel;
+        probe += 0. * (state.pos.sum() + state.vel.sum());
+    }
+    if (!(probe == 0.)) stopDiverged();
+}
+
+/// Forces that other engines put on the nodes in this step.
+void MembraneIntegrator::takeForces() {
+    sweep_.outside.clear();
+    ForceContainer& forces = scene->forces;
+    if (forces.synced && forces.syncCount == syncs_) return; // nobody has added any since the last step
+    if (forces.lastReset < scene->iter)
+        throw std::runtime_error("MembraneIntegrator: forces were added to O.forces, which were not reset in this step: "
+                                 "put a ForceResetter at the beginning of O.engines, and let it not be dead");
+    forces.sync();
+    for (const int i : owned_) {
+        const Vector3r& f = forces.getForce(membrane->bodyIds[i]);
+        if (!f.isZero(0.)) sweep_.outside.emplace_back(i, f);
+    }
+}
+
+void MembraneIntegrator::computeForces() {
+    const MembraneLedger* const counting = ledger();
+    continueLedger(counting);
+    ::membrane::SweepStep step;
+    step.dt = scene->dt;
+    step.gravity = gravity;
+    step.localDamping = damping;
+    step.move = moveNodes;
+    step.sums = step.apart = counting;
+    if (moveNodes && !integratorChecked_) checkIntegrator();
+    integratorChecked_ = integratorChecked_ || moveNodes;
+    if (!sweep_.step(step)) stopDiverged();
+    for (const int i : shared_) scene->forces.addForce(membrane->bodyIds[i], sweep_.force(i));
+    syncs_ = scene->forces.syncCount + (scene->forces.synced ? 0 : 1); // NewtonIntegrator will sum them
+    if (!moveNodes) return;
+    movedStep = scene->dt;
+    bodiesCurrent_ = false;
+    if (exchangeIsDue()) writeBack();
+}
+
+bool MembraneIntegrator::exchangeIsDue() {
+    ++sinceExchange_;
+    const bool endKnown = scene->stopAtIter > scene->iter;
+    if (scene->stopAtIter == scene->iter + 1) return true;
+    if (scene->stopAtTime > 0. && scene->time + scene->dt >= scene->stopAtTime) return true;
+    return sinceExchange_ >= exchangePeriod || !(endKnown || Omega::instance().isRunning());
+}
+
+void MembraneIntegrator::writeBack() {
+    if (bodiesCurrent_) return;
+    for (const int i : owned_) {
+        states_[i]->pos = sweep_.x.at(i);
+        states_[i]->vel = sweep_.v.at(i);
+    }
+    bodiesCurrent_ = true;
+    sinceExchange_ = 0;
+}
+
+Vector3r MembraneIntegrator::positionSeen(int node) const {
+    // Where it was before it moved here; shared nodes are still there in the arrays.
+    const bool moved = !std::binary_search(shared_.begin(), shared_.end(), node) && moveNodes;
+    return moved ? Vector3r(sweep_.x.at(node) - movedStep * sweep_.v.at(node)) : Vector3r(sweep_.x.at(node));
+}
+
+Vector3r MembraneIntegrator::velocitySeen(int node) const {
+    const bool moved = !std::binary_search(shared_.begin(), shared_.end(), node) && moveNodes;
+    return moved ? Vector3r(3. * sweep_.v.at(node) - 2. * sweep_.u.at(node)) : Vector3r(sweep_.v.at(node));
+}
+
+std::pair<Real, Real> MembraneIntegrator::powerFromOutside() const {
+    std::pair<Real, Real> power{0., 0.};
+    for (const auto& [node, f] : sweep_.outside) {
+        power.first += f.dot(velocitySeen(node));
+        power.second += f.dot(sweep_.v.at(node));
+    }
+    return power;
+}
+
+vector<Vector3r> MembraneIntegrator::nodeForces() {
+    vector<Vector3r> forces = MembraneForceEngine::nodeForces();
+    for (const int i : owned_) forces[i] = sweep_.force(i); // with those from outside
+    return forces;
+}
+
+} // namespace yade
