@@ -15,8 +15,9 @@ inline void compute(int count, const Components (&x)[4], const Constants& c, con
     CreaseLaw law = parameters;
     law.conservative = conservative; // known to the compiler
     const Components a = x[0], b = x[1], apexC = x[2], apexD = x[3];
+    const int padded = wholeLanes(count);
 #pragma GCC ivdep
-    for (int e = 0; e < count; ++e) {
+    for (int e = 0; e < padded; ++e) {
         CreaseRest rest;
         rest.length = c.length[e];
         rest.heightC = c.heightC[e];
@@ -67,7 +68,7 @@ CreaseTable creaseTable(const RestState& rest, const Partition& partition) {
     CreaseTable table;
     table.order = arrange<4>(corners, partition);
     for (const int e : table.order.element) {
-        const CreaseRest& r = rest.creases[e].rest;
+        const CreaseRest r = e >= 0 ? rest.creases[e].rest : CreaseRest{1., 1., 1., 1.};
         table.length.push_back(r.length);
         table.heightC.push_back(r.heightC);
         table.heightD.push_back(r.heightD);
