@@ -228,7 +228,10 @@ def set_engines(
         bounds = [yade.Bo1_Sphere_Aabb(), yade.Bo1_Facet_Aabb()]
         collider = [
             yade.InsertionSortCollider(
-                bounds, verletDist=spool.VERLET_DISTANCE, targetInterv=-1, avoidSelfInteractionMask=spool.NO_SELF_CONTACT
+                bounds,
+                verletDist=spool.VERLET_DISTANCE,
+                targetInterv=-1,
+                avoidSelfInteractionMask=spool.NO_SELF_CONTACT,
             )
         ]
         geometry.append(yade.Ig2_Facet_Sphere_ScGeom())
