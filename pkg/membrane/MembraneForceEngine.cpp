@@ -2,6 +2,7 @@
 #include "MembraneForceEngine.hpp"
 #include "Faults.hpp"
 #include "MembraneLedger.hpp"
+#include "TimeStepState.hpp"
 #include "mechanics/CriticalTimeStep.hpp"
 #include "mechanics/Damping.hpp"
 #include "mechanics/Drag.hpp"
@@ -176,10 +177,13 @@ void MembraneForceEngine::computeForces() {
 
 void MembraneForceEngine::checkTimeStep() {
     if (!forceTimeStep) {
-        const Real limit = criticalTimeStep();
-        if (!(scene->dt <= limit)) {
+        writeBack();
+        const TimeStepState now(*membrane, states_, airDensity);
+        const vector<Real> damping = dampingCoefficients();
+        if (!::membrane::withinCriticalTimeStep({membrane->rest(), now.masses, now.positions, damping, now.drag, law()},
+                                                scene->dt)) {
             std::ostringstream message;
-            message << "MembraneForceEngine: O.dt = " << scene->dt << " s must be <= " << limit
+            message << "MembraneForceEngine: O.dt = " << scene->dt << " s must be <= " << criticalTimeStep()
                     << " s, the critical time step; lower it, or set forceTimeStep=True";
             throw std::runtime_error(message.str());
         }
