@@ -55,7 +55,7 @@ private:
     const Scene* scene_ = nullptr;                                ///< whose nodes the arrays hold
     bool bodiesCurrent_ = true; ///< the bodies hold what the arrays hold, but for changes by hand
     bool forget_ = false;
-    bool moved_ = false; ///< whether the last step did
+    bool moved_ = false;                 ///< whether the last step did
     NewtonIntegrator* newton_ = nullptr; ///< of the scene, in this step
     vector<Vector3r> outsideShared_;     ///< forces [N] from outside on the shared nodes, if they move here
     int sinceExchange_ = 0;
