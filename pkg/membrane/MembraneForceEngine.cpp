@@ -185,6 +185,16 @@ void MembraneForceEngine::checkTimeStep() {
     checkedStep_ = scene->dt;
 }
 
+void MembraneForceEngine::advance(long steps) {
+    constexpr long between = 64; // looks for Ctrl-C
+    if (Omega::instance().isRunning()) throw std::runtime_error("advance: the scene is running already");
+    const shared_ptr<Scene> current = Omega::instance().getScene();
+    for (long step = 0; step < steps; ++step) {
+        current->moveToNextTimeStep();
+        if (step % between == 0 && PyErr_CheckSignals() != 0) boost::python::throw_error_already_set();
+    }
+}
+
 Vector3r MembraneForceEngine::totalForce(int node) const {
     return scene->forces.getForce(membrane->bodyIds[node]);
 }

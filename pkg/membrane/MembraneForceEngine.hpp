@@ -44,6 +44,7 @@ public:
     virtual void forgetVelocities() { seenPositions.clear(); }
     virtual vector<Vector3r> nodeForces();
 
+    static void advance(long steps);
     Real criticalTimeStep();
     Real creaseEnergy(const ::membrane::Points& x) const;
     Real creaseEnergyNow();
@@ -69,6 +70,8 @@ public:
         ((vector<Vector3r>, seenVelocities, , Attr::readonly, "Velocities [m/s] of the nodes in the last step."))
         ,
         ,
+        .def("advance", &MembraneForceEngine::advance, "Run so many steps of the scene: O.step() without the way through Python in between.")
+        .staticmethod("advance")
         .def("criticalTimeStep", &MembraneForceEngine::criticalTimeStep, "Estimate of the critical time step [s] in the present state, from the actual "
             "stiffnesses, damping, drag, creases and masses; contacts of other functors are not counted.")
         .def("creaseEnergy", &MembraneForceEngine::creaseEnergyNow, "Energy [J] stored in the creases in the present state.")
