@@ -140,8 +140,8 @@ void MembraneForceEngine::stopDiverged() const {
                              ") has a position or velocity that is not finite");
 }
 
-MembraneLedger* MembraneForceEngine::ledger() const {
-    for (const auto& engine : scene->engines)
+MembraneLedger* MembraneForceEngine::ledger(const Scene& in) const {
+    for (const auto& engine : in.engines)
         if (!engine->dead)
             if (auto* found = dynamic_cast<MembraneLedger*>(engine.get()))
                 if (found->forces.get() == this) return found;
@@ -155,7 +155,7 @@ void MembraneForceEngine::continueLedger(const MembraneLedger* of) {
 }
 
 void MembraneForceEngine::computeForces() {
-    const MembraneLedger* const counting = ledger();
+    const MembraneLedger* const counting = ledger(*scene);
     continueLedger(counting);
     if (!counting && !(beta > 0. || zeta > 0. || airDensity > 0.)) return; // all forces were 0 from the start
     ::membrane::SweepStep step;
