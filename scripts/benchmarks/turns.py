@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Paired measurements: everything once in every round, ratios within a round, medians over them."""
+
+import statistics
+
+from . import Entry
+
+
+def take_turns(takers, rounds):
+    """Measure everything `rounds` times, turn by turn, every other round in reverse.
+
+    Parameters
+    ----------
+    takers : dict
+        Functions without arguments that return a number, by name.
+    rounds : int
+
+    Returns
+    -------
+    dict
+        A list of `rounds` numbers for each name.
+    """
+    found = {name: [] for name in takers}
+    for number in range(rounds):
+        names = list(takers)
+        for name in names if number % 2 == 0 else reversed(names):
+            found[name].append(takers[name]())
+    return found
+
+
+def ratios(above, below):
+    """Ratios of two lists of paired numbers, pair by pair."""
+    if len(above) != len(below) or not above:
+        raise ValueError(f"{len(above)} and {len(below)} numbers make no pairs")
+    return [a / b for a, b in zip(above, below)]
+
+
+def entry(name, numbers, unit, nodes, **more):
+    """An Entry of the median of `numbers`, with their spread."""
+    return Entry(
+        name, statistics.median(numbers), unit, nodes, spread=(min(numbers), max(numbers)), **more
+    )
+
+
+def ratio_entry(name, above, below, nodes, **more):
+    """An Entry of the median of paired ratios, and of the ratio of the best of either."""
+    best = min(above) / min(below)
+    return entry(name, ratios(above, below), "-", nodes, best=best, **more)
