@@ -2,7 +2,7 @@
 """Measures the speed of the plugin and writes reference/bench.json.
 
 Run it by `scripts/run.sh bench [options]`, or by `yade -n -x scripts/bench.py [options]`. All
-that is compared is measured turn by turn in one run. Targets are reported, not asserted: the
+that is compared is measured turn by turn in one run, while the machine does nothing else. Targets are reported, not asserted: the
 exit status is 0 whenever the measurements were possible.
 """
 
@@ -17,7 +17,7 @@ sys.path.append(str(SCRIPTS))
 
 import benchmarks  # noqa: E402  (found only now)
 from benchmarks import lammps, results  # noqa: E402
-from benchmarks.other_work import OtherWork  # noqa: E402
+from benchmarks.quiet import Quiet  # noqa: E402
 from membrane.sail import versions  # noqa: E402
 
 MODULES = {
@@ -48,14 +48,14 @@ def command_line():
     parser.add_argument(
         "--no-deployment", action="store_true", help="leave out the paper's deployment"
     )
-    parser.add_argument(
-        "--paths",
-        nargs="+",
-        choices=benchmarks.PATHS,
-        default=list(benchmarks.PATHS),
-        help="paths of the plugin that are measured (default: both; else no file is written)",
-    )
     parser.add_argument("--rounds", type=int, default=7, help="of each comparison (default 7)")
+    parser.add_argument(
+        "--patience",
+        type=float,
+        default=300.0,
+        help="time to lose by waiting for a machine without other work, and by repeating rounds "
+        "that were disturbed [s] (default 300)",
+    )
     parser.add_argument(
         "--quick", action="store_true", help="small sizes and short turns; write no file"
     )
@@ -84,16 +84,14 @@ def main():
     settings = benchmarks.Settings(
         rounds=arguments.rounds,
         quick=arguments.quick,
-        paths=tuple(arguments.paths),
+        quiet=Quiet(arguments.patience, tell),
         tell=tell,
     )
     left_out = ["deployment"] if arguments.no_deployment else []
     chosen = [name for name in MODULES if name in arguments.only and name not in left_out]
     made_of, met = results.commit(), []
-    whole = not arguments.quick and set(settings.paths) == set(benchmarks.PATHS)
     for number, name in enumerate(chosen, start=1):
         tell(f"{number} of {len(chosen)}, {name}: {MODULES[name]}")
-        others = OtherWork()
         try:
             found = importlib.import_module(f"benchmarks.{name}").measure(settings)
         except RuntimeError as error:
@@ -101,13 +99,13 @@ def main():
             return 1
         print("\n".join(results.table(name, found)), flush=True)
         met += [entry.holds for entry in found if entry.bound]
-        busy = round(others.cores(), 2)
-        tell(f"{name}: meanwhile {busy:.2f} cores were busy with something else")
-        if whole:
+        busy = round(settings.quiet.other_work(), 2)
+        tell(f"{name}: during the rounds {busy:.2f} cores were busy with something else")
+        if not arguments.quick:
             rows = results.as_rows(name, found, made_of)
             results.save(RESULTS, name, rows, {**made_with(), "other_work": busy}, list(MODULES))
     print(f"{sum(met)} of {len(met)} targets are met.")
-    if whole:
+    if not arguments.quick:
         print(f"Results are in {RESULTS}")
     tell("done")
     return 0

@@ -7,16 +7,18 @@ Nothing here measures a speed, and LAMMPS need not be installed.
 import importlib
 import json
 import sys
+import time
 import unittest
+from unittest import mock
 
 import numpy as np
 from support import ROOT, scratch
 
 sys.path.append(str(ROOT / "scripts"))
 benchmarks = importlib.import_module("benchmarks")
-cases, lammps, other_work, results, sheet, turns, workers = (
+cases, lammps, quiet, results, sheet, turns, workers = (
     importlib.import_module(f"benchmarks.{name}")
-    for name in ("cases", "lammps", "other_work", "results", "sheet", "turns", "workers")
+    for name in ("cases", "lammps", "quiet", "results", "sheet", "turns", "workers")
 )
 
 
@@ -29,7 +31,7 @@ class TestTurns(unittest.TestCase):
     def test_everything_takes_its_turn_in_every_round(self):
         seen = []
         takers = {name: lambda n=name: seen.append(n) or len(seen) for name in "abc"}
-        found = turns.take_turns(takers, 3)
+        found = turns.take_turns(takers, 3, quiet.Quiet(0))
         self.assertEqual("".join(seen), "abccbaabc")
         self.assertEqual(found, {"a": [1, 6, 7], "b": [2, 5, 8], "c": [3, 4, 9]})
 
@@ -102,8 +104,36 @@ class TestResults(unittest.TestCase):
         self.assertRegex(results.commit(), r"^(unknown|[0-9a-f]{12}\+?)$")
         self.assertIn("cores", results.processor())
 
-    def test_other_work_is_counted_in_cores(self):
-        self.assertGreaterEqual(other_work.OtherWork().cores(), 0.0)
+
+class TestQuiet(unittest.TestCase):
+    def disturbed(self, patience, cores, tell=None):
+        """Numbers that are taken beside other work on so many `cores`, and the one that counts."""
+        taken, last = [], cores.pop
+        with mock.patch.object(quiet.OtherWork, "cores", lambda self: last(0)):
+            with mock.patch.object(quiet, "LOOK", 0.0):
+                watch = quiet.Quiet(patience, tell)
+                found = watch.measure(lambda: taken.append(0) or len(taken))
+        return found, watch.other_work()
+
+    def test_disturbed_measurements_are_repeated_on_a_quiet_machine(self):
+        cores = [0.0, 1.0, 0.9, 0.1, 0.05]  # looked, measured, looked, looked, measured
+        self.assertEqual(self.disturbed(60.0, cores), (2, 0.05))
+
+    def test_without_patience_the_first_one_counts(self):
+        self.assertEqual(self.disturbed(0.0, [1.0]), (1, 1.0))
+
+    def test_end_of_patience_is_told_once(self):
+        told = []
+        self.assertEqual(self.disturbed(1e-9, [0.7, 0.8], told.append), (1, 0.8))
+        self.assertEqual(len(told), 1)
+
+    def test_own_work_is_not_that_of_others(self):
+        watch = quiet.OtherWork()
+        before, start = quiet._own(), time.process_time()
+        while time.process_time() - start < 0.2:
+            pass
+        self.assertAlmostEqual(quiet._own() - before, 0.2, delta=0.05)
+        self.assertGreaterEqual(watch.cores(), 0.0)
 
 
 class TestSheet(unittest.TestCase):

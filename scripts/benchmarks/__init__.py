@@ -25,16 +25,16 @@ class Settings:
         Of each comparison.
     quick : bool
         Only small sizes and short turns.
-    paths : tuple of str
-        Some of PATHS.
+    quiet : Quiet
+        Through which all is measured.
     tell : callable
         Takes a line about progress.
     """
 
-    rounds: int = 7
-    quick: bool = False
-    paths: tuple = PATHS
-    tell: object = print
+    rounds: int
+    quick: bool
+    quiet: object
+    tell: object
 
     def work(self, node_steps):
         """Nodes times steps of a turn."""

@@ -4,18 +4,14 @@
 from . import FUSED, LAW2
 
 PERIODS = (1, 100)  # steps between two updates of the bodies, path fused
-LAW2_SHARE = 0.125  # of the steps, so that a turn of the slower path is no longer
+FORCES = (False, True)  # not all, all
+WORK = 2e7  # nodes times steps of a turn, about 0.3 s
+LAW2_SHARE = 0.125  # of them, so that a turn of the slower path takes about as long
 
 
-def cases(paths):
-    """All (path, all forces or not, exchange period) of some paths."""
-    found = []
-    for everything in (False, True):
-        if FUSED in paths:
-            found += [(FUSED, everything, period) for period in PERIODS]
-        if LAW2 in paths:
-            found.append((LAW2, everything, 1))
-    return found
+def fused_cases():
+    """All (path, all forces or not, exchange period) of the fused path."""
+    return [(FUSED, everything, period) for everything in FORCES for period in PERIODS]
 
 
 def label(path, everything, period):
@@ -36,12 +32,8 @@ def plan(side, threads, path, everything, period):
     }
 
 
-def plans(settings, side, threads):
-    """Arguments of Worker for all cases of a sheet, by case."""
-    return {case: plan(side, threads, *case) for case in cases(settings.paths)}
-
-
-def steps_of(work, nodes):
-    """Steps of a turn of `work` nodes times steps: a multiple of the longest period."""
+def steps(settings, nodes, path=FUSED):
+    """Steps of a turn: a multiple of the longest period."""
+    work = settings.work(WORK) * (LAW2_SHARE if path == LAW2 else 1.0)
     period = max(PERIODS)
     return period * max(1, round(work / nodes / period))

@@ -7,7 +7,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from . import AT_MOST, FUSED, Entry
+from . import AT_MOST, FUSED, PATHS, Entry
 
 SCRIPT = Path(__file__).resolve().parents[1] / "deploy.py"
 MOST = 6.0  # [s], all together
@@ -33,9 +33,9 @@ def deploy(path):
 def measure(settings):
     """Entries of the wall time of each stage and of all."""
     found = []
-    for path in settings.paths:
+    for path in PATHS:
         settings.tell(f"the paper's deployment, path {path}")
-        summary, whole = deploy(path)
+        summary, whole = settings.quiet.measure(lambda path=path: deploy(path))
         nodes, wall = summary["mesh"]["nodes"], summary["wall_time"]
         found += [
             Entry(f"deployment, {path}: {text}", wall[stage], "s", nodes)

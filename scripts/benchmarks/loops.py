@@ -29,7 +29,7 @@ def measure_sail(refine, settings):
     }
     with workers(plans) as started:
         asked = {name: lambda one=one: one.measure(steps) for name, one in started.items()}
-        answers = take_turns(asked, settings.rounds)
+        answers = take_turns(asked, settings.rounds, settings.quiet)
     springs, contacts = ([a["seconds"] for a in answers[n]] for n in ("springs", "contacts"))
     engine, loop = ([a[n] for a in answers["folded"]] for n in ("engine", "loop"))
     times = {

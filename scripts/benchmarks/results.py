@@ -17,7 +17,7 @@ MEANING = {
     "springs": "springs, buckling and damping; in LAMMPS springs alone",
     "all forces": "springs, buckling, damping, creases on every fourth row of sides, air drag",
     "exchange": "steps between two updates of YADE's bodies, path fused",
-    "other_work": "cores that were busy with something else meanwhile, mean",
+    "other_work": "cores that were busy with something else during the rounds, mean",
 }
 MADE_FROM = ("pkg", "scripts", "CMakeLists.txt")  # what decides on the speed
 

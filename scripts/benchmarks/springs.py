@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The plugin's sheet beside the bare springs of the same sheet in LAMMPS."""
+"""The sheet on the fused path beside the bare springs of the same sheet in LAMMPS."""
 
 import tempfile
 from pathlib import Path
 
-from . import AT_MOST, FUSED, lammps
-from .cases import LAW2_SHARE, PERIODS, label, plans, steps_of
+from . import AT_MOST, lammps
+from .cases import PERIODS, fused_cases, label, plan, steps
 from .sheet import SIDES, square_sheet
 from .turns import entry, ratio_entry, take_turns
 from .workers import workers
 
-WORK = 2e7  # nodes times steps of a turn: about 0.5 s of LAMMPS
-MOST = {False: 0.5, True: 1.0}  # all forces or not
+MOST = {False: 0.5, True: 1.0}  # all forces or not; for the longest period
 
 
 def measure(settings):
@@ -28,16 +27,15 @@ def measure(settings):
 def measure_sheet(side, threads, settings):
     """Entries for one sheet: times of LAMMPS and of each case, and ratios."""
     nodes, sheet = side * side, square_sheet(side)
-    settings.tell(f"LAMMPS and {', '.join(settings.paths)} on {nodes} nodes, {threads} thread(s)")
-    steps = steps_of(settings.work(WORK), nodes)
-    with tempfile.TemporaryDirectory() as name, workers(plans(settings, side, threads)) as started:
+    settings.tell(f"LAMMPS and fused on {nodes} nodes, {threads} thread{'s' * (threads > 1)}")
+    many, plans = steps(settings, nodes), {c: plan(side, threads, *c) for c in fused_cases()}
+    with tempfile.TemporaryDirectory() as name, workers(plans) as started:
         folder = Path(name)
         lammps.write_data(sheet, folder / "sheet.data")
-        takers = {None: lambda: lammps.loop_time(lammps.run(folder, steps, threads))}
+        takers = {None: lambda: lammps.loop_time(lammps.run(folder, many, threads))}
         for case, worker in started.items():
-            own = steps if case[0] == FUSED else steps_of(LAW2_SHARE * settings.work(WORK), nodes)
-            takers[case] = lambda w=worker, s=own: w.measure(s)["seconds"]
-        times = take_turns(takers, settings.rounds)
+            takers[case] = lambda w=worker: w.measure(many)["seconds"]
+        times = take_turns(takers, settings.rounds, settings.quiet)
 
     bare = times.pop(None)
     each = [1e9 / nodes * seconds for seconds in bare]
@@ -45,9 +43,9 @@ def measure_sheet(side, threads, settings):
     for case, taken in times.items():
         each = [1e9 / nodes * seconds for seconds in taken]
         found.append(entry(label(*case), each, "ns a node and step", nodes, threads=threads))
-        path, everything, period = case
+        _, everything, period = case
         wanted = {}
-        if path == FUSED and period == max(PERIODS):
+        if period == max(PERIODS):
             wanted = {"target": MOST[everything], "bound": AT_MOST}
         name = f"{label(*case)}, over LAMMPS"
         found.append(ratio_entry(name, taken, bare, nodes, threads=threads, **wanted))

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Two threads beside one."""
+"""Two threads of the fused path beside one."""
 
 from . import AT_LEAST, FUSED
-from .cases import LAW2_SHARE, PERIODS, label, plan, steps_of
+from .cases import FORCES, PERIODS, label, plan, steps
 from .sheet import SIDES
-from .turns import ratio_entry, take_turns
+from .turns import entry, ratio_entry, take_turns
 from .workers import workers
 
-WORK = 2e7  # nodes times steps of a turn of the fused path
 LEAST = {SIDES[0]: 1.0, SIDES[1]: 1.6, SIDES[2]: 1.6}
 
 
@@ -16,23 +15,25 @@ def measure(settings):
     found = []
     for side in settings.sizes(LEAST):
         settings.tell(f"one thread and two on {side * side} nodes")
-        for path in settings.paths:
-            for everything in (False, True):
-                case = (path, everything, max(PERIODS) if path == FUSED else 1)
-                found.append(measure_case(side, case, settings))
+        for everything in FORCES:
+            found += measure_case(side, (FUSED, everything, max(PERIODS)), settings)
     return found
 
 
 def measure_case(side, case, settings):
-    """The Entry for one sheet and case."""
-    fused = case[0] == FUSED
-    work = settings.work(WORK) * (1 if fused else LAW2_SHARE)
-    steps = steps_of(work, side * side)
+    """Entries for one sheet and case."""
+    nodes = side * side
+    many = steps(settings, nodes)
     with workers({threads: plan(side, threads, *case) for threads in (1, 2)}) as started:
         times = take_turns(
-            {n: lambda w=w: w.measure(steps)["seconds"] for n, w in started.items()},
+            {n: lambda w=w: w.measure(many)["seconds"] for n, w in started.items()},
             settings.rounds,
+            settings.quiet,
         )
-    wanted = {"target": LEAST[side], "bound": AT_LEAST} if fused else {}
-    name = f"one thread over two, {label(*case)}"
-    return ratio_entry(name, times[1], times[2], side * side, threads=2, **wanted)
+    name, unit = label(*case), "ns a node and step"
+    found = [
+        entry(f"threads: {name}", [1e9 / nodes * t for t in times[n]], unit, nodes, threads=n)
+        for n in times
+    ]
+    wanted = {"threads": 2, "target": LEAST[side], "bound": AT_LEAST}
+    return [*found, ratio_entry(f"{name}, one thread over two", *times.values(), nodes, **wanted)]

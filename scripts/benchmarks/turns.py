@@ -6,7 +6,7 @@ import statistics
 from . import Entry
 
 
-def take_turns(takers, rounds):
+def take_turns(takers, rounds, quiet):
     """Measure everything `rounds` times, turn by turn, every other round in reverse.
 
     Parameters
@@ -14,6 +14,7 @@ def take_turns(takers, rounds):
     takers : dict
         Functions without arguments that return a number, by name.
     rounds : int
+    quiet : Quiet
 
     Returns
     -------
@@ -22,9 +23,11 @@ def take_turns(takers, rounds):
     """
     found = {name: [] for name in takers}
     for number in range(rounds):
-        names = list(takers)
-        for name in names if number % 2 == 0 else reversed(names):
-            found[name].append(takers[name]())
+        names = list(takers) if number % 2 == 0 else list(reversed(takers))
+        for name, taken in quiet.measure(
+            lambda order=names: [(name, takers[name]()) for name in order]
+        ):
+            found[name].append(taken)
     return found
 
 
