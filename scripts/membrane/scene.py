@@ -66,6 +66,10 @@ class MembraneScene:
         """Whether the nodes are moved by a MembraneIntegrator."""
         return hasattr(self.forces, "exchangePeriod")
 
+    def last_positions(self):
+        """Positions of the nodes as the last step's forces saw them, (N, 3) [m]."""
+        return np.frombuffer(self.forces.lastPositionsBytes()).reshape(-1, 3)
+
     def masses(self):
         """Masses of the nodes, (N,) [kg]."""
         return np.array(self.membrane.masses)
@@ -224,7 +228,7 @@ def set_engines(
         bounds = [yade.Bo1_Sphere_Aabb(), yade.Bo1_Facet_Aabb()]
         collider = [
             yade.InsertionSortCollider(
-                bounds, verletDist=spool.VERLET_DISTANCE, avoidSelfInteractionMask=spool.NO_SELF_CONTACT
+                bounds, verletDist=spool.VERLET_DISTANCE, targetInterv=-1, avoidSelfInteractionMask=spool.NO_SELF_CONTACT
             )
         ]
         geometry.append(yade.Ig2_Facet_Sphere_ScGeom())

@@ -6,7 +6,15 @@ namespace membrane {
 namespace {
 
 struct Constants {
-    const double *length, *heightC, *heightD, *sign;
+    const double *length, *heightC, *heightD, *sign, *steepestLever, *slopeC, *slopeD;
+};
+
+/// CreaseRest with its functions computed beforehand.
+struct Rest {
+    double length, heightC, heightD, sign, lever, ofC, ofD;
+    double steepestLever() const { return lever; }
+    double slopeC() const { return ofC; }
+    double slopeD() const { return ofD; }
 };
 
 template <bool conservative>
@@ -18,11 +26,8 @@ inline void compute(int count, const Components (&x)[4], const Constants& c, con
     const int padded = wholeLanes(count);
 #pragma GCC ivdep
     for (int e = 0; e < padded; ++e) {
-        CreaseRest rest;
-        rest.length = c.length[e];
-        rest.heightC = c.heightC[e];
-        rest.heightD = c.heightD[e];
-        rest.sign = c.sign[e];
+        const Rest rest{c.length[e],        c.heightC[e], c.heightD[e], c.sign[e],
+                        c.steepestLever[e], c.slopeC[e],  c.slopeD[e]};
         const CreaseForces f = creaseForces(rest, law, creaseState(rest, a.at(e), b.at(e), apexC.at(e), apexD.at(e)));
         for (int k = 0; k < 3; ++k) {
             force[0].component[k][e] = f.a[k];
@@ -45,7 +50,9 @@ inline void addBlocks(const CreaseTable& table, const CreaseLaw& law, int group,
                                       cornerOf(block, node[2], x, room[2]), cornerOf(block, node[3], x, room[3])};
         compute<conservative>(block.end - block.begin, corners,
                               {table.length.data() + block.begin, table.heightC.data() + block.begin,
-                               table.heightD.data() + block.begin, table.sign.data() + block.begin},
+                               table.heightD.data() + block.begin, table.sign.data() + block.begin,
+                               table.steepestLever.data() + block.begin, table.slopeC.data() + block.begin,
+                               table.slopeD.data() + block.begin},
                               law, force);
         for (int k = 0; k < 4; ++k) addCorner(block, force[k], node[k], to);
     }
@@ -73,6 +80,9 @@ CreaseTable creaseTable(const RestState& rest, const Partition& partition) {
         table.heightC.push_back(r.heightC);
         table.heightD.push_back(r.heightD);
         table.sign.push_back(r.sign);
+        table.steepestLever.push_back(r.steepestLever());
+        table.slopeC.push_back(r.slopeC());
+        table.slopeD.push_back(r.slopeD());
     }
     return table;
 }

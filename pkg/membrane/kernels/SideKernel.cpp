@@ -39,7 +39,7 @@ inline void compute(int count, const Components& xa, const Components& xb, const
         }
         if (energy) {
             out.energy[e] = sideEnergy(length, c.stiffness[e], c.restLength[e], c.critical[e]);
-            out.kink[e] = kinkEnergy(c.length[e], length, c.stiffness[e], c.restLength[e], c.critical[e]);
+            out.kink[e] = kinkEnergy(c.length[e], length, c.stiffness[e], c.critical[e]);
             c.length[e] = length;
         }
     }
@@ -196,7 +196,7 @@ SideEnergy addSides(SideTable& table, const RestState& rest, const std::vector<d
         const double length = span.norm();
         if (job.energy) {
             sum.elastic += sideEnergy(length, s.stiffness, s.restLength, s.critical);
-            sum.kink += kinkEnergy(table.cableLength[i], length, s.stiffness, s.restLength, s.critical);
+            sum.kink += kinkEnergy(table.cableLength[i], length, s.stiffness, s.critical);
             table.cableLength[i] = length;
         }
         if (!(length > s.restLength)) continue; // slack: neither pulls nor is damped
