@@ -41,9 +41,9 @@ TEST(SideForce, KinkEnergyIsWhatTheMeanTensionMissesOfTheWorkBetween) {
             const double mean =
                 0.5 * (sideTension(before, stiffness, rest, critical) + sideTension(after, stiffness, rest, critical));
             const double missed = work - mean * (after - before);
-            EXPECT_NEAR(kinkEnergy(before, after, stiffness, rest, critical), missed, 1e-9) << before << " " << after;
+            EXPECT_NEAR(kinkEnergy(before, after, stiffness, critical), missed, 1e-9) << before << " " << after;
             if ((before < critical) == (after < critical))
-                EXPECT_EQ(kinkEnergy(before, after, stiffness, rest, critical), 0.);
+                EXPECT_EQ(kinkEnergy(before, after, stiffness, critical), 0.);
             else
                 EXPECT_GT(std::abs(missed), 1e-3);
         }

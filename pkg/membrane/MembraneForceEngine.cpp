@@ -187,6 +187,10 @@ void MembraneForceEngine::checkTimeStep() {
     checkedStep_ = scene->dt;
 }
 
+Vector3r MembraneForceEngine::totalForce(int node) const {
+    return scene->forces.getForce(membrane->bodyIds[node]);
+}
+
 vector<Vector3r> MembraneForceEngine::lastPositions() const {
     vector<Vector3r> x;
     if (lastStep_ < 0) return x;

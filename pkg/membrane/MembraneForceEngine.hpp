@@ -27,9 +27,11 @@ public:
     vector<Vector3r> dragForces() const { return ofNodes(&::membrane::Sweep::dragForce); }
     boost::python::object lastPositionsBytes() const;
 
-    /// For the ledger: the nodes that YADE's integrator moves, and everything summed over the others.
-    virtual const vector<int>& nodesOfYade() const { return allNodes_; }
+    /// For the ledger: the nodes that the sweep does not move, and everything summed over the others.
+    virtual const vector<int>& nodesLeft() const { return allNodes_; }
     const ::membrane::Sweep& sweep() const { return sweep_; }
+    /// All forces [N] on one of the nodes that the sweep does not move, gravity apart.
+    virtual Vector3r totalForce(int node) const;
     /// Power [W] of the forces from outside on those others, at the velocities before and after the last step.
     virtual std::pair<Real, Real> powerFromOutside() const { return {0., 0.}; }
     /// Whether the last step made the sums for the ledger.

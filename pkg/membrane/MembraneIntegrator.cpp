@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneIntegrator.hpp"
 #include "MembraneLedger.hpp"
+#include "RunEnd.hpp"
+#include "mechanics/LocalDamping.hpp"
 #include <algorithm>
 #include <core/BodyContainer.hpp>
 #include <core/Omega.hpp>
@@ -21,8 +23,6 @@ constexpr int maskByDefault = 1;
 } // namespace
 
 void MembraneIntegrator::postLoad(MembraneIntegrator&) {
-    if (!(damping >= 0. && damping < 1.))
-        throw std::invalid_argument("MembraneIntegrator: damping = " + std::to_string(damping) + " must be in [0, 1)");
     if (exchangePeriod <= 0)
         throw std::invalid_argument("MembraneIntegrator: exchangePeriod = " + std::to_string(exchangePeriod) +
                                     " must be > 0");
@@ -107,31 +107,23 @@ void MembraneIntegrator::arrange() {
     const int threads = ompThreads > 0 ? ompThreads : omp_get_max_threads();
     const int worthwhile = std::max(1, static_cast<int>(states_.size()) / nodesOfThread);
     prepareSweep(mine, ompThreads > 0 ? threads : std::min(threads, worthwhile));
-    integratorChecked_ = false;
 }
 
-/// NewtonIntegrator must move the shared nodes and leave alone the others.
-void MembraneIntegrator::checkIntegrator() const {
-    const Scene& now = *Omega::instance().getScene();
-    bool found = false;
-    for (const auto& engine : now.engines) {
-        if (engine->getClassName() != "NewtonIntegrator") continue;
-        found = !engine->dead;
-        const PyGILState_STATE lock = PyGILState_Ensure(); // engines may run without Python's lock
-        const int mask = boost::python::extract<int>(engine->pyDict()["mask"]);
-        PyGILState_Release(lock);
-        if (mask <= 0 || (mask & nodeMask))
-            throw std::runtime_error("MembraneIntegrator: NewtonIntegrator would move its nodes once more; give it mask=" +
-                                     std::to_string(nodeMask - 1));
-    }
-    if (!found && !shared_.empty())
-        throw std::runtime_error("MembraneIntegrator: " + std::to_string(shared_.size()) +
-                                 " nodes that are bounded or held, node " + std::to_string(shared_.front()) +
-                                 " the first, need a NewtonIntegrator that is not dead after it, with mask=" +
+void MembraneIntegrator::findIntegrator() {
+    newton_ = nullptr;
+    for (const auto& engine : scene->engines)
+        if (auto* found = dynamic_cast<NewtonIntegrator*>(engine.get())) {
+            newton_ = found;
+            if (!found->dead) break;
+        }
+    if (movesShared()) return;
+    if (newton_->mask <= 0 || (newton_->mask & nodeMask))
+        throw std::runtime_error("MembraneIntegrator: NewtonIntegrator would move its nodes once more; give it mask=" +
                                  std::to_string(nodeMask - 1));
 }
 
 void MembraneIntegrator::gather() {
+    findIntegrator();
     const bool otherStep = movedStep > 0. && scene->dt != movedStep;
     if (bodiesCurrent_) readBodies();
     readShared();
@@ -178,16 +170,20 @@ void MembraneIntegrator::readShared() {
 /// Forces that other engines put on the nodes in this step.
 void MembraneIntegrator::takeForces() {
     sweep_.outside.clear();
+    outsideShared_.assign(movesShared() ? shared_.size() : 0, Vector3r::Zero());
     ForceContainer& forces = scene->forces;
     if (forces.synced && forces.syncCount == syncs_) return; // nobody has added any since the last step
     if (forces.lastReset < scene->iter)
-        throw std::runtime_error("MembraneIntegrator: forces were added to O.forces, which were not reset in this step: "
-                                 "put a ForceResetter at the beginning of O.engines, and let it not be dead");
+        throw std::runtime_error(
+            "MembraneIntegrator: forces were added to O.forces, which were not reset in this step: "
+            "put a ForceResetter at the beginning of O.engines, and let it not be dead");
     forces.sync();
     for (const int i : owned_) {
         const Vector3r& f = forces.getForce(membrane->bodyIds[i]);
         if (!f.isZero(0.)) sweep_.outside.emplace_back(i, f);
     }
+    for (std::size_t k = 0; k < outsideShared_.size(); ++k)
+        outsideShared_[k] = forces.getForce(membrane->bodyIds[shared_[k]]);
 }
 
 void MembraneIntegrator::computeForces() {
@@ -195,27 +191,53 @@ void MembraneIntegrator::computeForces() {
     continueLedger(counting);
     ::membrane::SweepStep step;
     step.dt = scene->dt;
-    step.gravity = gravity;
-    step.localDamping = damping;
+    if (newton_) {
+        step.gravity = newton_->gravity;
+        step.localDamping = newton_->damping;
+    }
     step.move = moveNodes;
     step.sums = step.apart = counting;
-    if (moveNodes && !integratorChecked_) checkIntegrator();
-    integratorChecked_ = integratorChecked_ || moveNodes;
     if (!sweep_.step(step)) stopDiverged();
-    for (const int i : shared_) scene->forces.addForce(membrane->bodyIds[i], sweep_.force(i));
+    if (!movesShared())
+        for (const int i : shared_) scene->forces.addForce(membrane->bodyIds[i], sweep_.force(i));
     syncs_ = scene->forces.syncCount + (scene->forces.synced ? 0 : 1); // NewtonIntegrator will sum them
     if (!moveNodes) return;
+    if (movesShared()) moveShared();
     movedStep = scene->dt;
     bodiesCurrent_ = false;
-    if (exchangeIsDue()) writeBack();
+    if (++sinceExchange_ >= exchangePeriod || endsRun(*scene)) writeBack();
 }
 
-bool MembraneIntegrator::exchangeIsDue() {
-    ++sinceExchange_;
-    const bool endKnown = scene->stopAtIter > scene->iter;
-    if (scene->stopAtIter == scene->iter + 1) return true;
-    if (scene->stopAtTime > 0. && scene->time + scene->dt >= scene->stopAtTime) return true;
-    return sinceExchange_ >= exchangePeriod || !(endKnown || Omega::instance().isRunning());
+Vector3r MembraneIntegrator::totalForce(int node) const {
+    if (outsideShared_.size() != shared_.size()) return MembraneForceEngine::totalForce(node);
+    const auto place = std::lower_bound(shared_.begin(), shared_.end(), node) - shared_.begin();
+    return sweep_.force(node) + outsideShared_[place];
+}
+
+/// NewtonIntegrator's step for the shared nodes, rotations apart.
+void MembraneIntegrator::moveShared() {
+    const Real dt = scene->dt, local = newton_ ? newton_->damping : 0.;
+    const Vector3r gravity = newton_ ? newton_->gravity : Vector3r::Zero();
+    for (const int i : shared_) {
+        State& state = *states_[i];
+        const Vector3r acceleration = totalForce(i) / state.mass + gravity;
+        for (int axis = 0; axis < 3; ++axis)
+            if (!(state.blockedDOFs & State::axisDOF(axis)))
+                state.vel[axis] += dt * ::membrane::locallyDamped(acceleration[axis], state.vel[axis], dt, local);
+        state.pos += dt * state.vel;
+    }
+    if (newton_) tellCollider();
+}
+
+/// Whether a node has left the bounds for which the collider has looked, where it looks for that.
+void MembraneIntegrator::tellCollider() const {
+    newton_->maxVelocitySq = 0.5; // not 0, which means that nobody has checked
+    for (const int i : shared_) {
+        if (!bodies_[i]->bound) continue;
+        const Bound& bound = *bodies_[i]->bound;
+        const Real moved = (states_[i]->pos - bound.refPos).cwiseAbs().maxCoeff();
+        if (!(moved == 0. || moved < bound.sweepLength)) newton_->maxVelocitySq = 2.;
+    }
 }
 
 void MembraneIntegrator::writeBack() {
@@ -249,8 +271,10 @@ std::pair<Real, Real> MembraneIntegrator::powerFromOutside() const {
 }
 
 vector<Vector3r> MembraneIntegrator::nodeForces() {
-    vector<Vector3r> forces = MembraneForceEngine::nodeForces();
+    vector<Vector3r> forces(states_.size());
     for (const int i : owned_) forces[i] = sweep_.force(i); // with those from outside
+    if (!movesShared()) Omega::instance().getScene()->forces.sync();
+    for (const int i : shared_) forces[i] = totalForce(i);
     return forces;
 }
 

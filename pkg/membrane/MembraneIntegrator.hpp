@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "MembraneForceEngine.hpp"
+#include <pkg/dem/NewtonIntegrator.hpp>
 
 namespace yade {
 
@@ -13,7 +14,8 @@ public:
 
     Vector3r positionSeen(int node) const override;
     Vector3r velocitySeen(int node) const override;
-    const vector<int>& nodesOfYade() const override { return shared_; }
+    const vector<int>& nodesLeft() const override { return shared_; }
+    Vector3r totalForce(int node) const override;
     std::pair<Real, Real> powerFromOutside() const override;
     void writeBack() override;
     void forgetVelocities() override { forget_ = true; }
@@ -23,13 +25,12 @@ public:
     YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MembraneIntegrator, MembraneForceEngine,
         "All forces of a :yref:`Membrane` and the leapfrog of its nodes in one pass over arrays of its own: the same physics as interactions, "
         ":yref:`MembraneForceEngine` and :yref:`NewtonIntegrator` together, several times faster. The membrane needs no interactions.\n\n"
-        "Nodes that can touch something or are driven (bounded bodies, and those with a blocked translation) stay with NewtonIntegrator: in every step "
-        "their places are read and their forces handed over. All others are moved here; their bodies get the mask `nodeMask`, which NewtonIntegrator's "
-        "mask must not contain. Forces that other engines put on them are taken from O.forces in every step. Their bodies are brought up to date "
+        "Gravity and local damping are those of the scene's NewtonIntegrator, which may be dead; its mask must not contain `nodeMask`, the mask that bodies of "
+        "nodes get here. Nodes that can touch something or are driven (bounded bodies, and those with a blocked translation) are exchanged in every step: "
+        "NewtonIntegrator moves them, unless it is dead; then they move here too. Forces that other engines put on nodes are taken from O.forces. "
+        "The other nodes' bodies are brought up to date "
         "every `exchangePeriod` steps, at the end of a run (O.run with a number of steps or O.stopAtTime, O.step) and before a save; where they were changed by hand since, "
         "the change is taken over at the beginning of the next run. Put it after InteractionLoop and before NewtonIntegrator.",
-        ((Vector3r, gravity, Vector3r::Zero(), , "Gravity [m/s²]; the same as NewtonIntegrator's."))
-        ((Real, damping, 0., Attr::triggerPostLoad, "Local damping as NewtonIntegrator's [-], in [0, 1); only to find an equilibrium."))
         ((int, exchangePeriod, 1, Attr::triggerPostLoad, "Steps between two updates of the bodies of nodes that touch nothing, > 0. Engines and scripts that look at those "
             "bodies in the middle of a run see them up to so many steps old (:yref:`writeBack<MembraneForceEngine.writeBack>` brings them up to date)."))
         ((int, nodeMask, (1 << 29), Attr::readonly, "Mask of the bodies that this engine moves: a bit that no other body has."))
@@ -49,21 +50,24 @@ protected:
 
 private:
     vector<shared_ptr<Body>> bodies_;
-    vector<int> owned_, shared_;  ///< nodes moved here and by NewtonIntegrator
+    vector<int> owned_, shared_; ///< nodes in the sweep, and those exchanged in every step
     vector<Vector3r> sharedSeenPositions_, sharedSeenVelocities_; ///< of the shared nodes, in the step before
-    const Scene* scene_ = nullptr; ///< whose nodes the arrays hold
-    bool bodiesCurrent_ = true;    ///< the bodies hold what the arrays hold, but for changes by hand
+    const Scene* scene_ = nullptr;                                ///< whose nodes the arrays hold
+    bool bodiesCurrent_ = true; ///< the bodies hold what the arrays hold, but for changes by hand
     bool forget_ = false;
-    bool integratorChecked_ = false;
+    NewtonIntegrator* newton_ = nullptr; ///< of the scene, in this step
+    vector<Vector3r> outsideShared_;     ///< forces [N] from outside on the shared nodes, if they move here
     int sinceExchange_ = 0;
     unsigned long syncs_ = 0; ///< how often the scene's forces had been summed, or will have been, since the last step
 
     bool belongsHere(int node) const;
-    void checkIntegrator() const;
+    void findIntegrator();
+    bool movesShared() const { return !newton_ || newton_->dead; }
+    void moveShared();
+    void tellCollider() const;
     void readBodies();
     void readShared();
     void takeForces();
-    bool exchangeIsDue();
 };
 REGISTER_SERIALIZABLE(MembraneIntegrator);
 

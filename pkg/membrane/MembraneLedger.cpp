@@ -44,11 +44,11 @@ void MembraneLedger::action() {
     vector<Real> arriving{moved.arriving[0], moved.arriving[1], moved.arriving[2], 0., arrivingOutside};
     vector<Real> leaving{moved.leaving[0], moved.leaving[1], moved.leaving[2], 0., leavingOutside};
     const auto& states = forces->states();
-    for (const int i : forces->nodesOfYade()) {
+    for (const int i : forces->nodesLeft()) {
         const State& state = *states[i];
         const Vector3r x = forces->positionSeen(i);
         const Vector3r free = freeDirections(state), held = Vector3r::Ones() - free;
-        const Vector3r total = scene->forces.getForce(membrane.bodyIds[i]);
+        const Vector3r total = forces->totalForce(i);
         const Vector3r fCrease = sweep.creaseForce(i), fDamping = sweep.dampingForce(i), fDrag = sweep.dragForce(i);
         const Vector3r internal = sweep.elasticForce(i) + fCrease + fDamping + fDrag, other = total - internal;
         const Vector3r after = state.vel;

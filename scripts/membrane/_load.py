@@ -18,6 +18,7 @@ CLASSES = (
     "MembraneForceEngine",
     "MembraneIntegrator",
     "CentrifugalField",
+    "SpoolRotation",
     "MembraneLedger",
     "MembraneTimeStepper",
     "MembraneWatch",

@@ -80,7 +80,7 @@ class Recorder:
 
     def history(self, time):
         """Append the measures of the last step, whose forces acted `time` [s] after the release."""
-        x = np.array(self.sail.forces.lastPositions())
+        x = self.sail.last_positions()
         self._azimuths.append(measures.tip_azimuths(self.mesh, x))
         turned = self.spin_rate * np.array([row["time"] for row in self.rows] + [time])
         phases = measures.phase_difference(np.array(self._azimuths), turned)[-1]
@@ -115,7 +115,7 @@ class Recorder:
 
     def shape(self, time):
         """Append the shape of the last step, at `time` [s], to the ParaView series."""
-        x = np.array(self.sail.forces.lastPositions())
+        x = self.sail.last_positions()
         length = np.linalg.norm(x[self._sides[:, 1]] - x[self._sides[:, 0]], axis=1)
         angle = np.full(len(self._sides), np.pi)
         angle[self._crease_rows] = self.sail.forces.creaseAngles(x.tolist())

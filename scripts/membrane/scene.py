@@ -13,6 +13,8 @@ LARGE = 100_000  # nodes: adding so many takes about a second, so that progress 
 ADDING = {"rest state": 2, "bodies": 2, "interactions": 6}  # stages and their shares of the time
 
 PATHS = ("law2", "fused")
+# What NewtonIntegrator moves: all but facets of the spool and nodes of a MembraneIntegrator.
+INTEGRATED = (1 << 29) - 1 - spool.SPOOL_MASK
 
 _plugin = _load.load()
 
@@ -28,14 +30,17 @@ class MembraneScene:
     field : CentrifugalField
         Dead except during spin-up.
     rotation : RotationEngine
-        Turns the driven bodies; dead during spin-up.
+        Turns the driven nodes; dead during spin-up.
+    spool : SpoolRotation
+        Turns the driven facets; dead during spin-up.
     newton : NewtonIntegrator
+        Dead where only nodes of a fused membrane move; its gravity and damping count all the same.
     ledger : MembraneLedger
         Dead during spin-up.
     watch : MembraneWatch or None
         Stops a run that goes wrong; rests while the ledger is dead.
     resetter : ForceResetter
-        Dead, like `newton`, as long as a fused membrane is alone in the scene.
+        Dead as long as a fused membrane is alone in the scene.
     driven : list of int
         Ids of the bodies that turn with the spool.
     """
@@ -44,6 +49,7 @@ class MembraneScene:
     forces: object
     field: object
     rotation: object
+    spool: object
     newton: object
     ledger: object
     watch: object = None
@@ -55,20 +61,14 @@ class MembraneScene:
         bodies = yade.Omega().bodies
         return np.array([bodies[i].state.pos for i in self.membrane.bodyIds])
 
-    def share_loops(self):
-        """Let YADE's own loops over bodies run: something else than free nodes needs them."""
-        self.resetter.dead = self.newton.dead = False
-
     @property
     def fused(self):
         """Whether the nodes are moved by a MembraneIntegrator."""
         return hasattr(self.forces, "exchangePeriod")
 
-    def set_damping(self, damping):
-        """Set the local damping [-] of the integrators, in [0, 1)."""
-        self.newton.damping = damping
-        if self.fused:
-            self.forces.damping = damping
+    def last_positions(self):
+        """Positions of the nodes as the last step's forces saw them, (N, 3) [m]."""
+        return np.frombuffer(self.forces.lastPositionsBytes()).reshape(-1, 3)
 
     def masses(self):
         """Masses of the nodes, (N,) [kg]."""
@@ -77,8 +77,6 @@ class MembraneScene:
     def hold(self, nodes, held=True):
         """Hold `nodes` (ids in the mesh) where they are, or let them go."""
         bodies, ids = yade.Omega().bodies, self.membrane.bodyIds
-        if held and len(nodes):
-            self.share_loops()
         for node in nodes:
             bodies[ids[node]].state.blockedDOFs = "xyzXYZ" if held else "XYZ"
 
@@ -203,7 +201,7 @@ def set_engines(
         raise ValueError(f"set_engines: path = {path!r} must be one of {', '.join(PATHS)}")
     fused = path == "fused"
     scene = yade.Omega()
-    own = {"gravity": gravity, "exchangePeriod": exchange_period} if fused else {}
+    own = {"exchangePeriod": exchange_period} if fused else {}
     forces = _plugin["MembraneIntegrator" if fused else "MembraneForceEngine"](
         membrane=membrane,
         beta=beta,
@@ -230,34 +228,36 @@ def set_engines(
         bounds = [yade.Bo1_Sphere_Aabb(), yade.Bo1_Facet_Aabb()]
         collider = [
             yade.InsertionSortCollider(
-                bounds, verletDist=2e-3, avoidSelfInteractionMask=spool.NO_SELF_CONTACT
+                bounds, verletDist=spool.VERLET_DISTANCE, targetInterv=-1, avoidSelfInteractionMask=spool.NO_SELF_CONTACT
             )
         ]
         geometry.append(yade.Ig2_Facet_Sphere_ScGeom())
         physics.append(yade.Ip2_FrictMat_FrictMat_FrictPhys())
         laws.append(yade.Law2_ScGeom_FrictPhys_CundallStrack())
+    facets = [i for i in driven if isinstance(scene.bodies[i].shape, yade.Facet)]
+    turning = spool.turning(facets, touching, omega, _plugin["SpoolRotation"])
+    turned = sorted(set(driven).difference(facets))
     rotation = yade.RotationEngine(
-        ids=list(driven),
+        ids=turned,
         angularVelocity=omega,
         rotationAxis=(0, 0, 1),
         rotateAroundZero=True,
         zeroPoint=(0, 0, 0),
-        dead=not driven,
+        dead=not turned,
     )
     centrifugal = _plugin["CentrifugalField"](membrane=membrane, omega=omega, dead=True)
-    newton = yade.NewtonIntegrator(damping=0, gravity=gravity)
-    if fused:
-        newton.mask = forces.nodeMask - 1
+    newton = yade.NewtonIntegrator(damping=0, gravity=gravity, mask=INTEGRATED)
     ledger = _plugin["MembraneLedger"](forces=forces, gravity=gravity)
-    resetter = yade.ForceResetter()
-    # A fused membrane with nothing else in the scene needs none of YADE's loops over bodies.
-    alone = fused and not laws and not len(driven) and len(scene.bodies) == len(membrane.bodyIds)
-    resetter.dead = newton.dead = alone
+    # With no other body that moves, a fused membrane needs none of YADE's loops over bodies.
+    others = len(scene.bodies) - len(membrane.bodyIds) - len(facets)
+    newton.dead = fused and not others
+    resetter = yade.ForceResetter(dead=newton.dead and not laws)
     watch = []
     if energy_tolerance is not None:
         watch = [_plugin["MembraneWatch"](ledger=ledger, tolerance=energy_tolerance)]
     scene.engines = [
         resetter,
+        turning,
         *collider,
         rotation,
         *([yade.InteractionLoop(geometry, physics, laws)] if laws else []),
@@ -272,6 +272,7 @@ def set_engines(
         forces,
         centrifugal,
         rotation,
+        turning,
         newton,
         ledger,
         watch[0] if watch else None,
@@ -297,7 +298,7 @@ def compute_forces(sail):
 
     It takes a step of YADE in which neither integrator, rotation nor ledger takes part.
     """
-    movers = (sail.rotation, sail.newton, sail.ledger)
+    movers = (sail.rotation, sail.spool, sail.newton, sail.ledger)
     were_dead = [engine.dead for engine in movers]
     for engine in movers:
         engine.dead = True
@@ -362,12 +363,12 @@ def spin_up(sail, omega, *, tolerance=1e-6, damping=0.3, batch=2000, max_time=5.
         simulated time [s], steps, residual [-].
     """
     scene = yade.Omega()
-    engines = {sail.field: False, sail.rotation: True, sail.ledger: True}
+    engines = {sail.field: False, sail.rotation: True, sail.spool: True, sail.ledger: True}
     for engine, dead in engines.items():
         engine.dead = dead
     sail.field.omega = omega
-    sail.set_damping(damping)
-    sail.share_loops()
+    sail.newton.damping = damping
+    sail.resetter.dead = False
     steps, calm, residual = 0, 0, float("inf")
     while calm < 2:
         if steps * scene.dt > max_time:
@@ -396,7 +397,7 @@ def release(sail, omega, held):
     follow from the accelerations of the nodes once they are free: v - a dt / 2.
     """
     sail.field.dead = True
-    sail.set_damping(0)
+    sail.newton.damping = 0
     sail.hold(held, False)
     scene = yade.Omega()
     set_spin(sail, omega, before=0)
@@ -409,4 +410,4 @@ def release(sail, omega, held):
         free = [axis not in state.blockedDOFs for axis in "xyz"]
         acceleration = free * (force / state.mass + gravity)
         state.vel = (np.array(state.vel) - 0.5 * scene.dt * acceleration).tolist()
-    sail.rotation.dead = sail.ledger.dead = False
+    sail.rotation.dead = sail.spool.dead = sail.ledger.dead = False

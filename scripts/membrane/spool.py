@@ -1,16 +1,50 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The central spool: a cylinder of YADE facets about the z axis (paper, section 3.3)."""
 
-from math import cos, pi, sin
+from math import cos, hypot, pi, sin
 
 from yade import utils
 from yade.wrapper import FrictMat, Omega
 
-SPOOL_MASK = 0b010
-TETHER_MASK = 0b110
+# A body collides with the spool if its mask has SPOOL_MASK and any other bit. NewtonIntegrator leaves
+# alone bodies that have no other: the facets, which SpoolRotation moves.
+SPOOL_MASK = 1 << 28
+TETHER_MASK = SPOOL_MASK | 1 << 27
 # Bodies of one and the same mask that share a bit with this one do not collide with one another:
 # neither tether masses nor facets.
-NO_SELF_CONTACT = 0b110
+NO_SELF_CONTACT = TETHER_MASK
+VERLET_DISTANCE = 2e-3  # of the collider [m]
+
+
+def turning(facets, touching, omega, rotation):
+    """Engine that turns the spool.
+
+    Parameters
+    ----------
+    facets, touching : sequences of int
+        Ids of the spool's facets and of the bodies that may touch it.
+    omega : float
+        About +z [rad/s].
+    rotation : class
+        SpoolRotation.
+
+    Returns
+    -------
+    SpoolRotation
+        Dead if there are no facets.
+    """
+    bodies = Omega().bodies
+    corners = [bodies[i].state.pos + v for i in facets for v in bodies[i].shape.vertices]
+    radius = max((hypot(c[0], c[1]) for c in corners), default=0.0)
+    thickest = max((bodies[i].shape.radius for i in touching), default=0.0)
+    return rotation(
+        ids=list(facets),
+        touching=list(touching),
+        angularVelocity=omega,
+        reach=radius + thickest + VERLET_DISTANCE / 2,
+        sweep=VERLET_DISTANCE / 2,
+        dead=not len(facets),
+    )
 
 
 def add_spool(radius=0.025, height=0.06, facets=36, young=1e6, friction_angle=0.3):

@@ -54,7 +54,7 @@ Partition partition(int nodes, int parts, int chunkSize) {
 }
 
 template <std::size_t K>
-Arrangement<K> arrange(const std::vector<std::array<int, K>>& elements, const Partition& partition, int padding) {
+Arrangement<K> arrange(const std::vector<std::array<int, K>>& elements, const Partition& partition, int widest) {
     const std::vector<int> group = groupsOf<K>(elements, partition);
     std::vector<int> order(elements.size());
     std::iota(order.begin(), order.end(), 0);
@@ -72,14 +72,32 @@ Arrangement<K> arrange(const std::vector<std::array<int, K>>& elements, const Pa
         out.element.push_back(element);
         for (std::size_t k = 0; k < K; ++k) out.node[k].push_back(nodes[k]);
     };
-    const auto close = [&](int begin, bool run) { // blocks of what was appended since `begin`
+    int begin = 0; // of the block that is being filled
+    int limit = 0; // nodes from here on may not be read in this group
+    const auto close = [&](bool run) {
         const int end = static_cast<int>(out.size());
-        for (int b = begin; b < end; b += blockSize) out.blocks.push_back({b, std::min(b + blockSize, end), run});
+        if (end == begin) return;
+        const int padding = wholeLanes(end - begin) - (end - begin);
+        for (const auto& nodes : out.node) run = run && nodes[end - 1] + padding < limit;
+        out.blocks.push_back({begin, end, run});
+        for (int spare = 1; static_cast<int>(out.size()) < end + padding; ++spare) {
+            std::array<int, K> nodes;
+            for (std::size_t k = 0; k < K; ++k) nodes[k] = out.node[k][end - 1] + (run ? spare : 0);
+            append(-1, nodes);
+        }
+        begin = static_cast<int>(out.size());
+    };
+    const auto put = [&](int element, const std::array<int, K>& nodes, bool run) {
+        append(element, nodes);
+        if (static_cast<int>(out.size()) - begin == blockSize) close(run);
     };
     const int groups = partition.partCount() + partition.chunkCount();
     std::size_t at = 0;
     for (int g = 0; g < groups; ++g) {
         out.groups.push_back(static_cast<int>(out.blocks.size()));
+        limit = partition.chunks.back();
+        if (g >= partition.partCount())
+            limit = partition.endNode(partOf(partition, partition.chunks[g - partition.partCount()]));
         std::vector<int> single;
         while (at < order.size() && group[order[at]] == g) {
             std::size_t end = at + 1;
@@ -89,32 +107,30 @@ Arrangement<K> arrange(const std::vector<std::array<int, K>>& elements, const Pa
                 const int step = gap(end);
                 if (!(step >= 1 && follows<K>(elements[order[end]], elements[order[end - 1]], step))) break;
                 if (step == 1) continue;
-                if (step > padding + 1 || end - unbroken > longRun) break;
+                if (step > widest + 1 || end - unbroken > longRun) break;
                 unbroken = end;
             }
             if (end - at < shortestRun) {
                 single.insert(single.end(), order.begin() + at, order.begin() + end);
             } else {
-                const int begin = static_cast<int>(out.size());
                 for (std::size_t i = at; i < end; ++i) {
                     std::array<int, K> nodes = elements[order[i]];
                     if (i > at)
                         for (int missing = gap(i) - 1; missing > 0; --missing) {
                             std::array<int, K> between = nodes;
                             for (int& node : between) node -= missing;
-                            append(-1, between);
+                            put(-1, between, true);
                         }
-                    append(order[i], nodes);
+                    put(order[i], nodes, true);
                 }
-                close(begin, true);
+                close(true);
             }
             at = end;
         }
-        const int begin = static_cast<int>(out.size());
         std::sort(single.begin(), single.end(),
                   [&](int i, int j) { return elements[i] != elements[j] ? elements[i] < elements[j] : i < j; });
-        for (int e : single) append(e, elements[e]);
-        close(begin, false);
+        for (int e : single) put(e, elements[e], false);
+        close(false);
     }
     out.groups.push_back(static_cast<int>(out.blocks.size()));
     return out;

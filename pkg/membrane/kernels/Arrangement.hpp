@@ -21,7 +21,7 @@ struct Partition {
 /// Splits `nodes` into `parts` of equal size and chunks of at most `chunkSize`.
 Partition partition(int nodes, int parts, int chunkSize);
 
-/// Elements in a row of the arrangement, at most blockSize.
+/// Elements in a row of the arrangement, at most blockSize. After its end there are elements -1 up to whole lanes.
 struct Block {
     int begin, end;
     bool run; ///< each corner's nodes follow one another: read and written without indices
@@ -33,7 +33,7 @@ struct Block {
 /// Groups: first those of each part whose nodes do not all lie in it, then those of each chunk, by their lowest node.
 template <std::size_t K> struct Arrangement {
     std::array<std::vector<int>, K> node;
-    std::vector<int> element; ///< index in the input; -1: padding, which joins two runs and must do nothing
+    std::vector<int> element; ///< index in the input; -1: padding. Within a block it joins two runs and must do nothing
     std::vector<Block> blocks;
     std::vector<int> groups; ///< first block of each group, then the number of blocks
 

@@ -22,7 +22,7 @@ struct BlockVectors {
 /// \param node of that corner for each element of the block
 inline Components cornerOf(const Block& block, const int* node, const Components& from, BlockVectors& room) {
     if (block.run) return from + node[0];
-    for (int e = 0; e < block.end - block.begin; ++e) {
+    for (int e = 0; e < wholeLanes(block.end - block.begin); ++e) {
         room.component[0][e] = from.x[node[e]];
         room.component[1][e] = from.y[node[e]];
         room.component[2][e] = from.z[node[e]];

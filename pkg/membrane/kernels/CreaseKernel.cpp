@@ -6,7 +6,15 @@ namespace membrane {
 namespace {
 
 struct Constants {
-    const double *length, *heightC, *heightD, *sign;
+    const double *length, *heightC, *heightD, *sign, *steepestLever, *slopeC, *slopeD;
+};
+
+/// CreaseRest with its functions computed beforehand.
+struct Rest {
+    double length, heightC, heightD, sign, lever, ofC, ofD;
+    double steepestLever() const { return lever; }
+    double slopeC() const { return ofC; }
+    double slopeD() const { return ofD; }
 };
 
 template <bool conservative>
@@ -15,13 +23,11 @@ inline void compute(int count, const Components (&x)[4], const Constants& c, con
     CreaseLaw law = parameters;
     law.conservative = conservative; // known to the compiler
     const Components a = x[0], b = x[1], apexC = x[2], apexD = x[3];
+    const int padded = wholeLanes(count);
 #pragma GCC ivdep
-    for (int e = 0; e < count; ++e) {
-        CreaseRest rest;
-        rest.length = c.length[e];
-        rest.heightC = c.heightC[e];
-        rest.heightD = c.heightD[e];
-        rest.sign = c.sign[e];
+    for (int e = 0; e < padded; ++e) {
+        const Rest rest{c.length[e],        c.heightC[e], c.heightD[e], c.sign[e],
+                        c.steepestLever[e], c.slopeC[e],  c.slopeD[e]};
         const CreaseForces f = creaseForces(rest, law, creaseState(rest, a.at(e), b.at(e), apexC.at(e), apexD.at(e)));
         for (int k = 0; k < 3; ++k) {
             force[0].component[k][e] = f.a[k];
@@ -44,7 +50,9 @@ inline void addBlocks(const CreaseTable& table, const CreaseLaw& law, int group,
                                       cornerOf(block, node[2], x, room[2]), cornerOf(block, node[3], x, room[3])};
         compute<conservative>(block.end - block.begin, corners,
                               {table.length.data() + block.begin, table.heightC.data() + block.begin,
-                               table.heightD.data() + block.begin, table.sign.data() + block.begin},
+                               table.heightD.data() + block.begin, table.sign.data() + block.begin,
+                               table.steepestLever.data() + block.begin, table.slopeC.data() + block.begin,
+                               table.slopeD.data() + block.begin},
                               law, force);
         for (int k = 0; k < 4; ++k) addCorner(block, force[k], node[k], to);
     }
@@ -67,11 +75,14 @@ CreaseTable creaseTable(const RestState& rest, const Partition& partition) {
     CreaseTable table;
     table.order = arrange<4>(corners, partition);
     for (const int e : table.order.element) {
-        const CreaseRest& r = rest.creases[e].rest;
+        const CreaseRest r = e >= 0 ? rest.creases[e].rest : CreaseRest{1., 1., 1., 1.};
         table.length.push_back(r.length);
         table.heightC.push_back(r.heightC);
         table.heightD.push_back(r.heightD);
         table.sign.push_back(r.sign);
+        table.steepestLever.push_back(r.steepestLever());
+        table.slopeC.push_back(r.slopeC());
+        table.slopeD.push_back(r.slopeD());
     }
     return table;
 }

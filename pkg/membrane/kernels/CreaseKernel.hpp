@@ -10,6 +10,7 @@ namespace membrane {
 struct CreaseTable {
     Arrangement<4> order;
     Array length, heightC, heightD, sign; ///< as in CreaseRest
+    Array steepestLever, slopeC, slopeD;  ///< its functions
 };
 
 CreaseTable creaseTable(const RestState& rest, const Partition& partition);

@@ -8,8 +8,9 @@ namespace {
 
 inline void compute(int count, const Components (&x)[3], const Components (&u)[3], double (&weight)[3][blockSize]) {
     const Components a = x[0], b = x[1], c = x[2], ua = u[0], ub = u[1], uc = u[2];
+    const int padded = wholeLanes(count);
 #pragma GCC ivdep
-    for (int e = 0; e < count; ++e) {
+    for (int e = 0; e < padded; ++e) {
         const Eigen::Vector3d corner = a.at(e);
         const Eigen::Vector3d area = (b.at(e) - corner).cross(c.at(e) - corner);
         weight[0][e] = dragWeight(area, ua.at(e));

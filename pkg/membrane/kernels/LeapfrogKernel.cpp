@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "LeapfrogKernel.hpp"
 #include "../mechanics/Drag.hpp"
+#include "../mechanics/LocalDamping.hpp"
 #include "Vectorised.hpp"
 
 namespace membrane {
 namespace {
-
-/// NewtonIntegrator's local damping of one component of the acceleration.
-inline double dampedLocally(double acceleration, double velocity, double dt, double damping) {
-    const double power = acceleration * (velocity + 0.5 * dt * acceleration);
-    const double sign = (power > 0. ? 1. : 0.) - (power < 0. ? 1. : 0.);
-    return acceleration * (1. - damping * sign);
-}
 
 /// What each node of a block adds to the sums.
 struct Contributions {
@@ -38,7 +32,7 @@ inline void moveBlock(int begin, int end, const Motion& m, Contributions& added)
         if (sums) force += damping.at(i) + crease.at(i);
         Eigen::Vector3d acceleration = (1. / mass[i]) * force + gravity;
         if (local)
-            for (int k = 0; k < 3; ++k) acceleration[k] = dampedLocally(acceleration[k], before[k], dt, share);
+            for (int k = 0; k < 3; ++k) acceleration[k] = locallyDamped(acceleration[k], before[k], dt, share);
         const Eigen::Vector3d after = before + dt * acceleration;
         if (sums) {
             const int e = i - begin;

@@ -22,8 +22,9 @@ struct Results {
 template <bool elastic, bool damped, bool energy>
 inline void compute(int count, const Components& xa, const Components& xb, const Components& ua, const Components& ub,
                     const Constants& c, Results& out) {
+    const int padded = wholeLanes(count);
 #pragma GCC ivdep
-    for (int e = 0; e < count; ++e) {
+    for (int e = 0; e < padded; ++e) {
         const Eigen::Vector3d span = xb.at(e) - xa.at(e);
         const double length = span.norm();
         const double inverse = length > 0. ? 1. / length : 0.;
@@ -38,7 +39,7 @@ inline void compute(int count, const Components& xa, const Components& xb, const
         }
         if (energy) {
             out.energy[e] = sideEnergy(length, c.stiffness[e], c.restLength[e], c.critical[e]);
-            out.kink[e] = kinkEnergy(c.length[e], length, c.stiffness[e], c.restLength[e], c.critical[e]);
+            out.kink[e] = kinkEnergy(c.length[e], length, c.stiffness[e], c.critical[e]);
             c.length[e] = length;
         }
     }
@@ -63,9 +64,11 @@ inline SideEnergy addBlocks(SideTable& table, int group, const SideJob& job) {
             damped ? cornerOf(block, a, job.u, gathered[2]) : Components(),
             damped ? cornerOf(block, b, job.u, gathered[3]) : Components(), constants, results);
         if (elastic && damped && job.elastic.x == job.damping.x)
+            for (int k = 0; k < 3; ++k) {
+                const int padded = wholeLanes(count);
 #pragma GCC ivdep
-            for (int e = 0; e < count; ++e)
-                for (int k = 0; k < 3; ++k) results.pull.component[k][e] += results.brake.component[k][e];
+                for (int e = 0; e < padded; ++e) results.pull.component[k][e] += results.brake.component[k][e];
+            }
         if (elastic) {
             addCorner(block, results.pull, a, job.elastic);
             subtractCorner(block, results.pull, b, job.elastic);
@@ -161,7 +164,8 @@ SideTable sideTable(const RestState& rest, const std::vector<double>& damping, c
         if (uniform)
             for (int e = 0; e < blockSize; ++e) append(first);
         else
-            for (int e = block.begin; e < block.end; ++e) append(constantsOf(table.order.element[e]));
+            for (int e = block.begin; e < block.begin + wholeLanes(block.end - block.begin); ++e)
+                append(constantsOf(table.order.element[e]));
     }
     const Arrangement<2> order = arrange<2>(cables, partition);
     for (std::size_t g = 0; g + 1 < order.groups.size(); ++g) {
@@ -192,7 +196,7 @@ SideEnergy addSides(SideTable& table, const RestState& rest, const std::vector<d
         const double length = span.norm();
         if (job.energy) {
             sum.elastic += sideEnergy(length, s.stiffness, s.restLength, s.critical);
-            sum.kink += kinkEnergy(table.cableLength[i], length, s.stiffness, s.restLength, s.critical);
+            sum.kink += kinkEnergy(table.cableLength[i], length, s.stiffness, s.critical);
             table.cableLength[i] = length;
         }
         if (!(length > s.restLength)) continue; // slack: neither pulls nor is damped

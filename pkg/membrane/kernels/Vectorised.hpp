@@ -19,6 +19,13 @@ extern "C" __attribute__((simd("notinbranch"))) double atan2(double, double) noe
 
 namespace membrane {
 
+/// Loops over a block's elements run on to a multiple of this, so that none is left over to be computed singly.
+constexpr int lanes = 8;
+
+inline int wholeLanes(int count) {
+    return (count + lanes - 1) / lanes * lanes;
+}
+
 /// Elements that a kernel takes at once: what it holds of them in between stays in the first-level cache.
 constexpr int blockSize = 128;
 

@@ -7,6 +7,9 @@
 
 namespace membrane {
 
+/// Levers 1/l_AB in (8) and 1/height in the conservative law stay below 1/(this fraction of the rest length).
+constexpr double leverFloor = 0.05;
+
 /// A crease AB between the triangles ABC and BAD, at rest. Seen from the side where the corners of ABC run
 /// counter-clockwise, a valley (sign +1) closes towards the eye and a mountain (sign -1) away from it.
 struct CreaseRest {
@@ -14,6 +17,12 @@ struct CreaseRest {
     double heightC = 0.; ///< l_CE [m], E the foot of C on AB
     double heightD = 0.; ///< l_DF [m], F the foot of D on AB
     double sign = 1.;    ///< +1 valley, -1 mountain
+
+    /// 1/l_AB does not exceed this in (8) [1/m].
+    double steepestLever() const { return 1. / (leverFloor * length); }
+    /// l_AB / l_CE² and l_AB / l_DF² in (7) [1/m].
+    double slopeC() const { return length / (heightC * heightC); }
+    double slopeD() const { return length / (heightD * heightD); }
 };
 
 /// Parameters of the crease law, paper equation (7).
@@ -40,12 +49,10 @@ struct CreaseForces {
 /// Current heights and lengths below this fraction of the rest value count as collapsed: nothing is divided by them.
 constexpr double collapsedFraction = 1e-6;
 
-/// Levers 1/l_AB in (8) and 1/height in the conservative law stay below 1/(this fraction of the rest length).
-constexpr double leverFloor = 0.05;
-
 /// Angle and directions of a crease from its nodes' positions [m]. Without branches, so that loops over creases are
-/// vectorised.
-inline CreaseState creaseState(const CreaseRest& rest, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+/// vectorised. Rest is CreaseRest, or what has the same members.
+template <class Rest>
+inline CreaseState creaseState(const Rest& rest, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                const Eigen::Vector3d& c, const Eigen::Vector3d& d) {
     CreaseState s;
     const Eigen::Vector3d span = b - a, toC = c - a, toD = d - a;
@@ -57,9 +64,9 @@ inline CreaseState creaseState(const CreaseRest& rest, const Eigen::Vector3d& a,
     const Eigen::Vector3d armC = toC - alongC * axis, armD = toD - alongD * axis;
     s.heightC = armC.norm();
     s.heightD = armD.norm();
-    const double lever = std::max(length, leverFloor * rest.length);
-    s.footC = alongC / lever;
-    s.footD = alongD / lever;
+    const double lever = std::min(inverse, rest.steepestLever());
+    s.footC = lever * alongC;
+    s.footD = lever * alongD;
 
     // The branch cut of atan2 is moved from pi (flat) to -pi/2, away from both closed and flat.
     constexpr double pi = 3.14159265358979323846;
@@ -74,7 +81,7 @@ inline CreaseState creaseState(const CreaseRest& rest, const Eigen::Vector3d& a,
 }
 
 /// Stiffness K [N m/rad] of a crease: beta E J l_AB / l, l the mean of the two rest heights.
-inline double creaseStiffness(const CreaseRest& rest, const CreaseLaw& law) {
+template <class Rest> inline double creaseStiffness(const Rest& rest, const CreaseLaw& law) {
     return law.bending * rest.length / (0.5 * (rest.heightC + rest.heightD));
 }
 
@@ -86,7 +93,7 @@ inline double creaseEnergy(const CreaseRest& rest, const CreaseLaw& law, double 
 }
 
 /// Forces on C and D by (7) or its conservative form, and on A and B by (8), which make the sum zero.
-inline CreaseForces creaseForces(const CreaseRest& rest, const CreaseLaw& law, const CreaseState& s) {
+template <class Rest> inline CreaseForces creaseForces(const Rest& rest, const CreaseLaw& law, const CreaseState& s) {
     double forceC, forceD; // along openC and openD
     if (law.conservative) {
         const double moment =
@@ -95,9 +102,9 @@ inline CreaseForces creaseForces(const CreaseRest& rest, const CreaseLaw& law, c
         forceD = moment / std::max(s.heightD, leverFloor * rest.heightD);
     } else {
         const double gamma = s.theta >= 0. ? 1. : law.penalty;
-        const double strength = -law.bending * gamma * rest.length * (s.theta - law.naturalAngle);
-        forceC = strength / (rest.heightC * rest.heightC);
-        forceD = strength / (rest.heightD * rest.heightD);
+        const double moment = -law.bending * gamma * (s.theta - law.naturalAngle);
+        forceC = moment * rest.slopeC();
+        forceD = moment * rest.slopeD();
     }
     CreaseForces f;
     f.c = forceC * s.openC;

@@ -25,14 +25,13 @@ inline double sideEnergy(double length, double stiffness, double restLength, dou
 }
 
 /// What the energy [J] of a side grows by beyond the mean of its tensions at the ends of a step times its change of
-/// length. 0 unless the side buckles or becomes taut in between: elsewhere the tension is a straight line.
+/// length. 0 unless the side buckles or becomes taut in between: elsewhere the tension is a straight line. With the
+/// lengths u above the critical one and w below it at the two ends, k u w / 2, gained by buckling.
 /// \param before, after length at the ends of the step [m]
-inline double kinkEnergy(double before, double after, double stiffness, double restLength, double critical) {
-    if ((before < critical) == (after < critical)) return 0.;
-    const double mean = 0.5 * (sideTension(before, stiffness, restLength, critical) +
-                               sideTension(after, stiffness, restLength, critical));
-    return sideEnergy(after, stiffness, restLength, critical) - sideEnergy(before, stiffness, restLength, critical) -
-           mean * (after - before);
+inline double kinkEnergy(double before, double after, double stiffness, double critical) {
+    const double above = std::max(std::max(before, after) - critical, 0.);
+    const double below = std::max(critical - std::min(before, after), 0.);
+    return (before > after ? 0.5 : -0.5) * stiffness * above * below;
 }
 
 } // namespace membrane
