@@ -2,8 +2,9 @@
 """Measures the speed of the plugin and writes reference/bench.json.
 
 Run it by `scripts/run.sh bench [options]`, or by `yade -n -x scripts/bench.py [options]`. All
-that is compared is measured turn by turn in one run, while the machine does nothing else. Targets are reported, not asserted: the
-exit status is 0 whenever the measurements were possible.
+that is compared is measured turn by turn in one run: on one thread in processor time, on several
+in wall time, while the machine does nothing else. Targets are reported, not asserted: the exit
+status is 0 whenever the measurements were possible.
 """
 
 import argparse
@@ -52,9 +53,9 @@ def command_line():
     parser.add_argument(
         "--patience",
         type=float,
-        default=300.0,
-        help="time to lose by waiting for a machine without other work, and by repeating rounds "
-        "that were disturbed [s] (default 300)",
+        default=120.0,
+        help="time that a module may lose by waiting for a machine without other work, and by "
+        "repeating what was disturbed [s] (default 120)",
     )
     parser.add_argument(
         "--quick", action="store_true", help="small sizes and short turns; write no file"
@@ -84,7 +85,7 @@ def main():
     settings = benchmarks.Settings(
         rounds=arguments.rounds,
         quick=arguments.quick,
-        quiet=Quiet(arguments.patience, tell),
+        quiet=Quiet(tell),
         tell=tell,
     )
     left_out = ["deployment"] if arguments.no_deployment else []
@@ -92,6 +93,7 @@ def main():
     made_of, met = results.commit(), []
     for number, name in enumerate(chosen, start=1):
         tell(f"{number} of {len(chosen)}, {name}: {MODULES[name]}")
+        settings.quiet.patience = arguments.patience
         try:
             found = importlib.import_module(f"benchmarks.{name}").measure(settings)
         except RuntimeError as error:

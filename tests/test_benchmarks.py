@@ -31,7 +31,7 @@ class TestTurns(unittest.TestCase):
     def test_everything_takes_its_turn_in_every_round(self):
         seen = []
         takers = {name: lambda n=name: seen.append(n) or len(seen) for name in "abc"}
-        found = turns.take_turns(takers, 3, quiet.Quiet(0))
+        found = turns.take_turns(takers, 3, quiet.Quiet())
         self.assertEqual("".join(seen), "abccbaabc")
         self.assertEqual(found, {"a": [1, 6, 7], "b": [2, 5, 8], "c": [3, 4, 9]})
 
@@ -111,7 +111,8 @@ class TestQuiet(unittest.TestCase):
         taken, last = [], cores.pop
         with mock.patch.object(quiet.OtherWork, "cores", lambda self: last(0)):
             with mock.patch.object(quiet, "LOOK", 0.0):
-                watch = quiet.Quiet(patience, tell)
+                watch = quiet.Quiet(tell)
+                watch.patience = patience
                 found = watch.measure(lambda: taken.append(0) or len(taken))
         return found, watch.other_work()
 
@@ -194,10 +195,16 @@ class TestLammps(unittest.TestCase):
         self.assertAlmostEqual(lengths[1] / lengths[0], np.sqrt(2))
 
     def test_loop_time_is_that_of_the_last_run(self):
-        said = "Loop time of {} on 1 procs for {} steps with 16 atoms\n"
-        self.assertEqual(lammps.loop_time(said.format("9", 100) + said.format("0.5", 1000)), 5e-4)
+        loop = "Loop time of {} on 1 procs for {} steps with 16 atoms\n"
+        use = "{}% CPU use with 1 MPI tasks x no OpenMP threads\n"
+        said = "".join(
+            loop.format(seconds, steps) + use.format(share)
+            for seconds, steps, share in (("9", 100, 30.0), ("0.5", 1000, 80.0))
+        )
+        self.assertAlmostEqual(lammps.loop_time(said, 2), 5e-4)
+        self.assertAlmostEqual(lammps.loop_time(said, 1), 4e-4)
         with self.assertRaisesRegex(RuntimeError, "ERROR: no"):
-            lammps.loop_time("ERROR: no such style")
+            lammps.loop_time("ERROR: no such style", 1)
 
 
 class TestWorker(unittest.TestCase):

@@ -89,13 +89,17 @@ def version():
     return found[1] if found else "unknown"
 
 
-def loop_time(output):
-    """Time a step [s] of the last run in what LAMMPS printed."""
+def loop_time(output, threads):
+    """Time a step [s] of the last run in what LAMMPS printed.
+
+    It is wall time; on one thread processor time, which other work on the machine lengthens less.
+    """
     found = re.findall(r"Loop time of (\S+) on \d+ procs for (\d+) steps", output)
     if not found:
         raise RuntimeError(f"LAMMPS reported no loop time; it said last: {output[-300:]!r}")
     seconds, steps = found[-1]
-    return float(seconds) / int(steps)
+    used = re.findall(r"([\d.]+)% CPU use", output) if threads == 1 else ["100"]
+    return float(seconds) / int(steps) * min(1.0, float(used[-1]) / 100)
 
 
 def run(folder, steps, threads):

@@ -57,14 +57,17 @@ class Quiet:
 
     Parameters
     ----------
-    patience : float
-        Time [s] to lose by that in all; afterwards every measurement counts.
     tell : callable, optional
         Takes a line when patience is at its end.
+
+    Attributes
+    ----------
+    patience : float
+        Time [s] that may still be lost by that; afterwards every measurement counts.
     """
 
-    def __init__(self, patience, tell=None):
-        self.patience, self.tell = patience, tell
+    def __init__(self, tell=None):
+        self.patience, self.tell = 0.0, tell
         self.accepted = []  # cores busy with something else during each measurement that counts
 
     def _lose(self, start):
@@ -82,13 +85,14 @@ class Quiet:
                 return
             self._lose(start)
 
-    def measure(self, take):
-        """What the function `take` returns, taken while the machine was quiet."""
+    def measure(self, take, wait=True):
+        """What the function `take` returns, taken while the machine was quiet if `wait`."""
         while True:
-            self._wait()
+            if wait:
+                self._wait()
             start, others = time.monotonic(), OtherWork()
             taken, busy = take(), others.cores()
-            if busy <= LIMIT or self.patience <= 0:
+            if not wait or busy <= LIMIT or self.patience <= 0:
                 self.accepted.append(busy)
                 return taken
             self._lose(start)

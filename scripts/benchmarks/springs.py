@@ -32,10 +32,10 @@ def measure_sheet(side, threads, settings):
     with tempfile.TemporaryDirectory() as name, workers(plans) as started:
         folder = Path(name)
         lammps.write_data(sheet, folder / "sheet.data")
-        takers = {None: lambda: lammps.loop_time(lammps.run(folder, many, threads))}
+        takers = {None: lambda: lammps.loop_time(lammps.run(folder, many, threads), threads)}
         for case, worker in started.items():
             takers[case] = lambda w=worker: w.measure(many)["seconds"]
-        times = take_turns(takers, settings.rounds, settings.quiet)
+        times = take_turns(takers, settings.rounds, settings.quiet, wait=threads > 1)
 
     bare = times.pop(None)
     each = [1e9 / nodes * seconds for seconds in bare]

@@ -29,6 +29,7 @@ def measure_case(side, case, settings):
             {n: lambda w=w: w.measure(many)["seconds"] for n, w in started.items()},
             settings.rounds,
             settings.quiet,
+            wait=True,
         )
     name, unit = label(*case), "ns a node and step"
     found = [

@@ -6,7 +6,7 @@ import statistics
 from . import Entry
 
 
-def take_turns(takers, rounds, quiet):
+def take_turns(takers, rounds, quiet, wait=False):
     """Measure everything `rounds` times, turn by turn, every other round in reverse.
 
     Parameters
@@ -15,6 +15,8 @@ def take_turns(takers, rounds, quiet):
         Functions without arguments that return a number, by name.
     rounds : int
     quiet : Quiet
+    wait : bool
+        For a machine that does nothing else: where wall time counts.
 
     Returns
     -------
@@ -25,7 +27,7 @@ def take_turns(takers, rounds, quiet):
     for number in range(rounds):
         names = list(takers) if number % 2 == 0 else list(reversed(takers))
         for name, taken in quiet.measure(
-            lambda order=names: [(name, takers[name]()) for name in order]
+            lambda order=names: [(name, takers[name]()) for name in order], wait
         ):
             found[name].append(taken)
     return found
