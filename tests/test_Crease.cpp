@@ -219,8 +219,8 @@ TEST(PaperCrease, ForceJumpsAtClosedFacesIfTheNaturalAngleIsNotZeroAsDocumented)
 // The conservative law
 
 TEST(ConservativeCrease, StiffnessTakesTheMeanOfTheRestHeights) {
-    EXPECT_DOUBLE_EQ(creaseStiffness({3., 0.5, 1.5, 1.}, {2., 100., 0., true}), 6.);
-    EXPECT_DOUBLE_EQ(creaseStiffness({3., 2., 2., -1.}, {2., 100., 0., false}), 3.);
+    EXPECT_DOUBLE_EQ(creaseStiffness(membrane::CreaseRest{3., 0.5, 1.5, 1.}, {2., 100., 0., true}), 6.);
+    EXPECT_DOUBLE_EQ(creaseStiffness(membrane::CreaseRest{3., 2., 2., -1.}, {2., 100., 0., false}), 3.);
 }
 
 TEST(ConservativeCrease, EnergyIsAParabolaStiffenedByThePenaltyBelowZero) {
