@@ -66,6 +66,8 @@ class Entry:
         What it should be at most, or at least.
     bound : str or None
         AT_MOST or AT_LEAST; None: no target.
+    other_work : float or None
+        Cores that were busy with something else meanwhile, mean.
     """
 
     name: str
@@ -77,6 +79,7 @@ class Entry:
     best: float | None = None
     target: float | None = None
     bound: str | None = None
+    other_work: float | None = None
 
     def __post_init__(self):
         if (self.target is None) != (self.bound is None):

@@ -52,19 +52,22 @@ def processor_time():
 
 def measure(settings):
     """Entries of the wall time of each stage and of all."""
-    found = []
-    for path in PATHS:
-        settings.tell(f"the paper's deployment, path {path}")
-        summary, whole, used = settings.quiet.measure(lambda path=path: deploy(path))
-        nodes, wall = summary["mesh"]["nodes"], summary["wall_time"]
-        found += [
-            Entry(f"deployment, {path}: {text}", wall[stage], "s", nodes)
-            for stage, text in STAGES.items()
-        ]
-        total = sum(wall[stage] for stage in STAGES)
-        wanted = {"target": MOST, "bound": AT_MOST} if path == FUSED else {}
-        found.append(Entry(f"deployment, {path}: total", total, "s", nodes, **wanted))
-        for text, value in {"wall": whole, "processor": used}.items():
-            name = f"deployment, {path}: {text} time with YADE's start and end"
-            found.append(Entry(name, value, "s", nodes))
-    return found
+    return [entry for path in PATHS for entry in measure_path(path, settings)]
+
+
+def measure_path(path, settings):
+    """Entries for one path."""
+    settings.tell(f"the paper's deployment, path {path}")
+    summary, whole, used = settings.quiet.measure(lambda: deploy(path))
+    nodes, wall = summary["mesh"]["nodes"], summary["wall_time"]
+    found = [
+        Entry(f"deployment, {path}: {text}", wall[stage], "s", nodes)
+        for stage, text in STAGES.items()
+    ]
+    total = sum(wall[stage] for stage in STAGES)
+    wanted = {"target": MOST, "bound": AT_MOST} if path == FUSED else {}
+    found.append(Entry(f"deployment, {path}: total", total, "s", nodes, **wanted))
+    for text, value in {"wall": whole, "processor": used}.items():
+        name = f"deployment, {path}: {text} time with YADE's start and end"
+        found.append(Entry(name, value, "s", nodes))
+    return settings.quiet.mark(found)

@@ -5,6 +5,7 @@ import os
 import resource
 import statistics
 import time
+from dataclasses import replace
 from pathlib import Path
 
 LIMIT = 0.15  # cores busy with something else, below which a machine is quiet
@@ -97,7 +98,7 @@ class Quiet:
                 return taken
             self._lose(start)
 
-    def other_work(self):
-        """Cores busy with something else, mean over what was accepted since the last question."""
-        accepted, self.accepted = self.accepted, []
-        return statistics.fmean(accepted) if accepted else 0.0
+    def mark(self, entries):
+        """List of Entry, with the other work during what was accepted since the last call."""
+        busy, self.accepted = round(statistics.fmean(self.accepted), 2), []
+        return [replace(entry, other_work=busy) for entry in entries]

@@ -18,7 +18,7 @@ MEANING = {
     "springs": "springs, buckling and damping; in LAMMPS springs alone",
     "all forces": "springs, buckling, damping, creases on every fourth row of sides, air drag",
     "exchange": "steps between two updates of YADE's bodies, path fused",
-    "other_work": "cores that were busy with something else during the rounds, mean",
+    "other_work": "cores that were busy with something else meanwhile, mean",
 }
 MADE_FROM = ("pkg", "scripts", "CMakeLists.txt")  # what decides on the speed
 
@@ -96,7 +96,7 @@ def save(path, module, rows, made_with, order):
 
 def table(module, entries):
     """Lines of text that show a list of Entry of a module."""
-    rows = [("", "nodes", "threads", "value", "best", "spread", "unit", "target", "")]
+    rows = [("", "nodes", "threads", "value", "best", "spread", "other", "unit", "target", "")]
     for one in entries:
         spread = f"{one.spread[0]:.3g} … {one.spread[1]:.3g}" if one.spread else ""
         target = f"{one.bound} {one.target:g}" if one.bound else ""
@@ -104,12 +104,13 @@ def table(module, entries):
         nodes = "" if one.nodes is None else f"{one.nodes}"
         value = f"{one.value:.3g}" if one.value < 1000 else f"{one.value:.0f}"
         best = f"{one.best:.3g}" if one.best else ""
-        row = (one.name, nodes, f"{one.threads}", value, best, spread, one.unit, target, holds)
-        rows.append(row)
+        other = "" if one.other_work is None else f"{one.other_work:.1f}"
+        row = (one.name, nodes, f"{one.threads}", value, best, spread, other, one.unit)
+        rows.append((*row, target, holds))
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     lines = [
         "  ".join(
-            text.ljust(width) if i in (0, 6, 7, 8) else text.rjust(width)
+            text.ljust(width) if i in (0, 7, 8, 9) else text.rjust(width)
             for i, (text, width) in enumerate(zip(row, widths))
         ).rstrip()
         for row in rows

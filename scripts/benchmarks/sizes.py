@@ -35,7 +35,7 @@ def measure(settings):
         if side > sides[0]:  # there all drowns in what YADE itself takes
             settings.tell(f"memory of {side * side} bodies")
             found += building(side * side, given[0]) + memory(side * side, given[-1], bodies(side))
-    return found
+    return settings.quiet.mark(found)
 
 
 def times(nodes, given, smallest):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Two threads of the fused path beside one."""
+"""Two threads of the fused path beside one, and beside two of LAMMPS: in wall time."""
 
-from . import AT_LEAST, FUSED
+from . import AT_LEAST, FUSED, springs
 from .cases import FORCES, PERIODS, label, plan, steps
 from .sheet import SIDES
 from .turns import entry, ratio_entry, take_turns
@@ -11,9 +11,10 @@ LEAST = {SIDES[0]: 1.0, SIDES[1]: 1.6, SIDES[2]: 1.6}
 
 
 def measure(settings):
-    """Entries of how many times faster two threads are than one."""
+    """Entries of how many times faster two threads are than one, and than LAMMPS on two."""
     found = []
     for side in settings.sizes(LEAST):
+        found += springs.measure_sheet(side, 2, settings)
         settings.tell(f"one thread and two on {side * side} nodes")
         for everything in FORCES:
             found += measure_case(side, (FUSED, everything, max(PERIODS)), settings)
@@ -37,4 +38,5 @@ def measure_case(side, case, settings):
         for n in times
     ]
     wanted = {"threads": 2, "target": LEAST[side], "bound": AT_LEAST}
-    return [*found, ratio_entry(f"{name}, one thread over two", *times.values(), nodes, **wanted)]
+    found.append(ratio_entry(f"{name}, one thread over two", *times.values(), nodes, **wanted))
+    return settings.quiet.mark(found)
