@@ -17,6 +17,8 @@ usage: scripts/run.sh COMMAND [options]
                             a table, and reference/verification.json; options of scripts/verify.py
   stability [options]       scan where each part of the method fails, into reference/stability
   parts [options]           what each part of the model changes and costs, into reference/parts.csv
+  chart [options]           accuracy against time for every path, step and mesh, into
+                            reference/chart.csv and chart.png
   build                     compile the plugin into build/python
   format [--check]          format C++ and Python sources; --check changes nothing and fails where
                             a file is not formatted or a linter complains
@@ -192,7 +194,7 @@ verify)
     compile
     run_yade "$root/scripts/verify.py" "$@"
     ;;
-stability | parts)
+stability | parts | chart)
     compile
     run_yade "$root/scripts/$command.py" "$@"
     ;;

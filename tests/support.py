@@ -14,7 +14,7 @@ from pathlib import Path
 
 import membrane
 import numpy as np
-from membrane import sail, scene
+from membrane import sail, scene, spool
 from membrane.mesh import sail_mesh
 from membrane.output import read_history
 from membrane.parameters import SailParameters
@@ -174,6 +174,12 @@ def engines_by_class():
     return {type(engine).__name__: engine for engine in O.engines}
 
 
+def force_engine():
+    """The scene's MembraneForceEngine or MembraneIntegrator."""
+    (engine,) = [e for e in O.engines if isinstance(e, membrane.MembraneForceEngine)]
+    return engine
+
+
 def node_states(net):
     """Positions and velocities (2, N, 3) of a membrane's nodes in the scene."""
     states = [O.bodies[i].state for i in net.bodyIds]
@@ -195,14 +201,17 @@ def quiet():
         yield
 
 
-def release_sail(**changes):
+def release_sail(threads=None, **changes):
     """Put the paper's sail just after its release into the scene, at its own time step.
 
-    The spin-up is cut short: the state need not be at rest to the last digit.
+    The spin-up is cut short: the state need not be at rest to the last digit. `threads`: of a
+    MembraneIntegrator.
     """
     O.reset()
     parameters = SailParameters(spin_up_tolerance=1e-3, **changes)
     mesh, spinning = sail.build(parameters)
+    if threads:
+        spinning.forces.ompThreads = threads
     with quiet():
         sail.spin_up(spinning, parameters)
     O.dt = parameters.dt
@@ -210,13 +219,13 @@ def release_sail(**changes):
 
 
 @lru_cache(maxsize=None)
-def released_sail():
-    """File with the scene of `release_sail`."""
-    release_sail()
-    path = scratch() / "released.yade.gz"
-    O.save(str(path), quiet=True)
+def released_sail(path="law2"):
+    """File with the scene of `release_sail`, on one of the scene's paths."""
+    release_sail(path=path)
+    file = scratch() / f"released_{path}.yade.gz"
+    O.save(str(file), quiet=True)
     O.reset()
-    return path
+    return file
 
 
 class MainRun:
@@ -245,6 +254,36 @@ class MainRun:
 def main_run():
     """The MainRun of this process."""
     return MainRun()
+
+
+def contacts():
+    """Number of contacts of tether masses with the spool."""
+    return sum(type(i.phys).__name__ == "FrictPhys" and i.isReal for i in O.interactions)
+
+
+def wind_a_tether(path="law2"):
+    """A taut chain that lies on a quarter of the turning spool; its outer end is held."""
+    O.reset()
+    omega, piece, radius = 40.0, 3e-3, 0.0254
+    arc = np.arange(-13, 1) * piece / radius
+    on_spool = radius * np.column_stack([np.cos(arc), np.sin(arc), np.zeros_like(arc)])
+    away = np.column_stack([np.full(8, radius), np.arange(1, 9) * piece, np.zeros(8)])
+    nodes = np.concatenate([on_spool, away])
+    cables = [(i, i + 1) for i in range(len(nodes) - 1)]
+    tether = scene.add_membrane(0.99 * nodes, [], cables=cables, positions=nodes)
+    ids = tether.bodyIds
+    made = scene.set_engines(
+        tether,
+        path=path,
+        driven=[*spool.add_spool(), ids[0]],
+        touching=ids[1:-1],
+        omega=omega,
+        zeta=0.3,
+    )
+    made.hold([0, len(nodes) - 1])
+    O.dt = 0.1 * made.forces.criticalTimeStep()
+    scene.advance(2000)
+    return made
 
 
 def yade_environment():

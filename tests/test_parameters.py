@@ -51,7 +51,8 @@ class TestParameters(unittest.TestCase):
             if item.type is bool:
                 words, expected = [flag], not item.default
             elif item.metadata["choices"]:
-                words, expected = [flag, "conservative"], "conservative"
+                expected = next(c for c in item.metadata["choices"] if c != item.default)
+                words = [flag, expected]
             elif item.type is int:
                 words, expected = [flag, str(item.default + 1)], item.default + 1
             else:

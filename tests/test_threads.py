@@ -6,37 +6,42 @@ from pathlib import Path
 
 import numpy as np
 from membrane import scene
-from support import O, engines_by_class, node_states, released_sail, run_yade, scratch
+from support import O, force_engine, node_states, released_sail, run_yade, scratch
 
 DRIVER = Path(__file__).with_name("continue_saved.py")
 STEPS, SAIL_SIZE = 1000, 0.455
 
 
 class TestThreads(unittest.TestCase):
-    def run_on(self, threads):
+    def run_on(self, threads, path):
         """Positions (N, 3) [m] after STEPS steps of the released sail on so many threads.
 
-        And the tracked strain energy [J] of the first step.
+        And the strain energy [J] of the first step.
         """
-        out = scratch() / f"threads_{threads}.npz"
-        done = run_yade(DRIVER, released_sail(), STEPS, out, threads=threads)
+        out = scratch() / f"threads_{threads}_{path}.npz"
+        done = run_yade(DRIVER, released_sail(path), STEPS, out, threads=threads)
         self.assertEqual(done.returncode, 0, done.stderr)
         with np.load(out) as found:
             self.assertEqual(found["threads"], threads)
             return found["positions"], float(found["energy"])
 
     def test_two_threads_give_the_positions_of_one(self):
-        (one, energy), (two, energy_of_two) = self.run_on(1), self.run_on(2)
+        for path in scene.PATHS:
+            with self.subTest(path):
+                self.check(path)
+
+    def check(self, path):
+        (one, energy), (two, energy_of_two) = self.run_on(1, path), self.run_on(2, path)
         self.assertGreater(energy, 1e-9)
         self.assertAlmostEqual(energy_of_two / energy, 1, delta=1e-9)
         O.reset()
-        O.load(str(released_sail()), quiet=True)
-        start = node_states(engines_by_class()["MembraneForceEngine"].membrane)[0]
+        O.load(str(released_sail(path)), quiet=True)
+        start = node_states(force_engine().membrane)[0]
         self.assertGreater(np.abs(one - start).max(), 1e-3, "the sail hardly moved")
         self.assertLess(np.abs(two - one).max(), 1e-9 * SAIL_SIZE)
         if O.numThreads == 1:
             scene.advance(STEPS)
-            here = node_states(engines_by_class()["MembraneForceEngine"].membrane)[0]
+            here = node_states(force_engine().membrane)[0]
             np.testing.assert_array_equal(one, here)
 
 

@@ -230,6 +230,24 @@ class TestRuns(TimeStepTest):
                 sheet.place(3 * sheet.rest)
                 O.step()
 
+    def test_longest_step_that_is_accepted_is_the_estimate(self):
+        for engine in ({}, {"beta": 3e6, "zeta": 0.1}, {"airDensity": 1e3}):
+            sheet = self.make(**engine)
+            sheet.states[5].blockedDOFs = "xyzXYZ"
+            sheet.place(1.01 * sheet.rest, 10 * sheet.rest)
+            sheet.run_engines()
+            sheet.engine.forceTimeStep = False
+            limit = sheet.engine.criticalTimeStep()
+            for step, refused in ((0.3, False), (0.9, False), (1.0, False), (1 + 1e-12, True)):
+                sheet.place(1.01 * sheet.rest, 10 * sheet.rest)
+                O.dt = step * limit
+                self.assertEqual(sheet.engine.criticalTimeStep(), limit)
+                if refused:
+                    with self.assertRaisesRegex(RuntimeError, "critical time step"):
+                        O.step()
+                else:
+                    O.step()
+
     def test_step_raised_during_a_run_is_refused(self):
         sheet = self.make(zeta=0.02)
         sheet.run_engines()

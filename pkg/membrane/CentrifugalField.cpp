@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "CentrifugalField.hpp"
+#include "MembraneForceEngine.hpp"
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
 
@@ -9,6 +10,9 @@ YADE_PLUGIN((CentrifugalField));
 
 void CentrifugalField::action() {
     if (!membrane) throw std::runtime_error("CentrifugalField: membrane is not set");
+    for (const auto& engine : scene->engines) // who moves the nodes may be ahead of their bodies
+        if (auto* forces = dynamic_cast<MembraneForceEngine*>(engine.get()))
+            if (forces->membrane == membrane) forces->writeBack();
     const auto states = membrane->states(*scene);
     for (std::size_t i = 0; i < states.size(); ++i) {
         const Vector3r& x = states[i]->pos;

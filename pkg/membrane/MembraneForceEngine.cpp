@@ -2,9 +2,9 @@
 #include "MembraneForceEngine.hpp"
 #include "Faults.hpp"
 #include "MembraneLedger.hpp"
+#include "TimeStepState.hpp"
 #include "mechanics/CriticalTimeStep.hpp"
 #include "mechanics/Damping.hpp"
-#include "mechanics/Drag.hpp"
 #include <cmath>
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
@@ -26,11 +26,6 @@ template <class Value> [[noreturn]] void refuse(const char* field, const Value& 
 
 void requireNotNegative(const char* field, Real value) {
     if (!(value >= 0.) || !std::isfinite(value)) refuse(field, value, "finite and >= 0");
-}
-
-/// Twice the area [m²] of a triangle times its unit normal.
-Vector3r doubleArea(const ::membrane::Points& x, const Vector3i& t) {
-    return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
 }
 
 } // namespace
@@ -176,10 +171,13 @@ void MembraneForceEngine::computeForces() {
 
 void MembraneForceEngine::checkTimeStep() {
     if (!forceTimeStep) {
-        const Real limit = criticalTimeStep();
-        if (!(scene->dt <= limit)) {
+        writeBack();
+        const TimeStepState now(*membrane, states_, airDensity);
+        const vector<Real> damping = dampingCoefficients();
+        if (!::membrane::withinCriticalTimeStep({membrane->rest(), now.masses, now.positions, damping, now.drag, law()},
+                                                scene->dt)) {
             std::ostringstream message;
-            message << "MembraneForceEngine: O.dt = " << scene->dt << " s must be <= " << limit
+            message << "MembraneForceEngine: O.dt = " << scene->dt << " s must be <= " << criticalTimeStep()
                     << " s, the critical time step; lower it, or set forceTimeStep=True";
             throw std::runtime_error(message.str());
         }
@@ -228,23 +226,9 @@ Real MembraneForceEngine::criticalTimeStep() {
         states_ = membrane->states(*current);
         membrane->checkUnchanged();
     }
-    ::membrane::Points x;
-    vector<Real> masses;
-    for (const auto& state : states_) {
-        x.push_back(state->pos);
-        // A node held in some directions only counts as free: that bounds the step from below.
-        masses.push_back(isHeld(*state) ? 0. : state->mass);
-    }
+    const TimeStepState now(*membrane, states_, airDensity);
     const vector<Real> damping = dampingCoefficients();
-    vector<Real> drag;
-    if (airDensity > 0.) {
-        drag.assign(x.size(), 0.);
-        for (const Vector3i& t : membrane->triangles) {
-            const Vector3r area = doubleArea(x, t);
-            for (int k = 0; k < 3; ++k) drag[t[k]] += ::membrane::cornerDragSlope(airDensity, area, states_[t[k]]->vel);
-        }
-    }
-    return ::membrane::criticalTimeStep({membrane->rest(), masses, x, damping, drag, law()});
+    return ::membrane::criticalTimeStep({membrane->rest(), now.masses, now.positions, damping, now.drag, law()});
 }
 
 Real MembraneForceEngine::creaseEnergy(const ::membrane::Points& x) const {

@@ -33,8 +33,8 @@ void MembraneIntegrator::preSave(MembraneForceEngine&) {
     writeBack();
     centredVelocities.resize(states_.size());
     for (const int i : allNodes_) centredVelocities[i] = sweep_.u.at(i);
-    seenPositions.assign(states_.size(), Vector3r::Zero());
-    seenVelocities.assign(states_.size(), Vector3r::Zero());
+    seenPositions = sweep_.x.points(); // of the nodes moved here by which changes by hand are seen
+    seenVelocities = sweep_.v.points();
     for (std::size_t k = 0; k < shared_.size(); ++k) {
         seenPositions[shared_[k]] = sharedSeenPositions_[k];
         seenVelocities[shared_[k]] = sharedSeenVelocities_[k];
@@ -66,17 +66,19 @@ void MembraneIntegrator::prepare(Scene& now) {
 
     scene_ = &now;
     bodiesCurrent_ = true;
-    const bool saved = centredVelocities.size() == states_.size();
+    const std::size_t count = states_.size();
+    const bool saved =
+        centredVelocities.size() == count && seenPositions.size() == count && seenVelocities.size() == count;
     for (const int i : allNodes_) {
+        const bool asSaved = saved && states_[i]->pos == seenPositions[i] && states_[i]->vel == seenVelocities[i];
         sweep_.x.set(i, states_[i]->pos);
         sweep_.v.set(i, states_[i]->vel);
-        sweep_.u.set(i, saved ? centredVelocities[i] : states_[i]->vel);
+        sweep_.u.set(i, asSaved ? centredVelocities[i] : states_[i]->vel);
     }
-    if (saved && seenPositions.size() == states_.size() && seenVelocities.size() == states_.size())
-        for (std::size_t k = 0; k < shared_.size(); ++k) {
-            sharedSeenPositions_[k] = seenPositions[shared_[k]];
-            sharedSeenVelocities_[k] = seenVelocities[shared_[k]];
-        }
+    for (std::size_t k = 0; saved && k < shared_.size(); ++k) {
+        sharedSeenPositions_[k] = seenPositions[shared_[k]];
+        sharedSeenVelocities_[k] = seenVelocities[shared_[k]];
+    }
     for (auto* vectors : {&centredVelocities, &seenPositions, &seenVelocities}) vector<Vector3r>().swap(*vectors);
     syncs_ = 0;
 }
@@ -85,28 +87,61 @@ void MembraneIntegrator::arrange() {
     vector<char> mine(states_.size());
     vector<Vector3r> seenX, seenV;
     vector<int> shared;
+    const bool continued = scene_ == scene && sweep_.x.size() == states_.size();
+    const Vector3r never = Vector3r::Constant(NaN);
     owned_.clear();
     for (const int i : allNodes_) {
         mine[i] = belongsHere(i);
+        const auto place = std::lower_bound(shared_.begin(), shared_.end(), i);
+        const bool wasShared = place != shared_.end() && *place == i;
+        const std::size_t k = place - shared_.begin();
         if (mine[i]) {
             owned_.push_back(i);
             bodies_[i]->groupMask = nodeMask;
+            if (!continued || !wasShared) continue;
+            const State& state = *states_[i];
+            sweep_.u.set(i, centredVelocity(state, sharedSeenPositions_[k], sharedSeenVelocities_[k], scene->dt));
+            sweep_.x.set(i, state.pos);
+            sweep_.v.set(i, state.vel);
             continue;
         }
         if (bodies_[i]->groupMask == nodeMask) bodies_[i]->groupMask = maskByDefault;
-        const auto before = std::lower_bound(shared_.begin(), shared_.end(), i);
-        const bool known = before != shared_.end() && *before == i;
-        const std::size_t k = before - shared_.begin();
-        seenX.push_back(known ? sharedSeenPositions_[k] : Vector3r::Constant(NaN)); // NaN: never seen there
-        seenV.push_back(known ? sharedSeenVelocities_[k] : Vector3r::Zero());
+        seenX.push_back(wasShared ? sharedSeenPositions_[k] : continued ? positionSeen(i) : never);
+        seenV.push_back(wasShared ? sharedSeenVelocities_[k] : continued ? velocitySeen(i) : never);
         shared.push_back(i);
     }
     shared_.swap(shared);
+    checkEngines();
     sharedSeenPositions_.swap(seenX);
     sharedSeenVelocities_.swap(seenV);
-    const int threads = ompThreads > 0 ? ompThreads : omp_get_max_threads();
-    const int worthwhile = std::max(1, static_cast<int>(states_.size()) / nodesOfThread);
-    prepareSweep(mine, ompThreads > 0 ? threads : std::min(threads, worthwhile));
+    prepareSweep(mine, wantedParts());
+}
+
+int MembraneIntegrator::wantedParts() const {
+    if (ompThreads > 0) return ompThreads;
+    return std::min(omp_get_max_threads(), std::max(1, static_cast<int>(states_.size()) / nodesOfThread));
+}
+
+/// Nobody else may compute the membrane's forces, nor move the shared nodes before they are known.
+void MembraneIntegrator::checkEngines() const {
+    bool met = false;
+    for (const auto& engine : scene->engines) {
+        if (engine.get() == this) {
+            if (met) throw std::runtime_error("MembraneIntegrator: it is in O.engines twice");
+            met = true;
+        } else if (engine->dead) {
+            continue;
+        } else if (const auto* other = dynamic_cast<const MembraneForceEngine*>(engine.get())) {
+            if (other->membrane == membrane)
+                throw std::runtime_error("MembraneIntegrator: another engine in O.engines, a " + other->getClassName() +
+                                         ", computes the forces of its membrane, too");
+        } else if (engine->getClassName() == "InteractionLoop" && membrane->hasInteractions()) {
+            throw std::runtime_error("MembraneIntegrator: the interactions of its membrane would pull once more; call "
+                                     "removeInteractions() of the membrane");
+        } else if (!met && !shared_.empty() && dynamic_cast<const NewtonIntegrator*>(engine.get())) {
+            throw std::runtime_error("MembraneIntegrator: NewtonIntegrator must come after it in O.engines");
+        }
+    }
 }
 
 void MembraneIntegrator::findIntegrator() {
@@ -135,7 +170,7 @@ void MembraneIntegrator::gather() {
 
 /// Takes over what was changed by hand since the bodies were last brought up to date.
 void MembraneIntegrator::readBodies() {
-    bool same = true;
+    bool same = sweep_.parts() == wantedParts();
     for (const int i : owned_) same = same && belongsHere(i);
     for (const int i : shared_) same = same && !belongsHere(i);
     if (!same) arrange();
@@ -173,17 +208,20 @@ void MembraneIntegrator::takeForces() {
     outsideShared_.assign(movesShared() ? shared_.size() : 0, Vector3r::Zero());
     ForceContainer& forces = scene->forces;
     if (forces.synced && forces.syncCount == syncs_) return; // nobody has added any since the last step
-    if (forces.lastReset < scene->iter)
-        throw std::runtime_error(
-            "MembraneIntegrator: forces were added to O.forces, which were not reset in this step: "
-            "put a ForceResetter at the beginning of O.engines, and let it not be dead");
     forces.sync();
     for (const int i : owned_) {
         const Vector3r& f = forces.getForce(membrane->bodyIds[i]);
         if (!f.isZero(0.)) sweep_.outside.emplace_back(i, f);
     }
-    for (std::size_t k = 0; k < outsideShared_.size(); ++k)
+    bool any = !sweep_.outside.empty();
+    for (std::size_t k = 0; k < outsideShared_.size(); ++k) {
         outsideShared_[k] = forces.getForce(membrane->bodyIds[shared_[k]]);
+        any = any || !outsideShared_[k].isZero(0.);
+    }
+    if (any && forces.lastReset < scene->iter) // else they would be those of an earlier step, too
+        throw std::runtime_error(
+            "MembraneIntegrator: forces were added to O.forces, which were not reset in this step: "
+            "put a ForceResetter at the beginning of O.engines, and let it not be dead");
 }
 
 void MembraneIntegrator::computeForces() {
@@ -196,7 +234,9 @@ void MembraneIntegrator::computeForces() {
         step.localDamping = newton_->damping;
     }
     step.move = moveNodes;
-    step.sums = step.apart = counting;
+    step.sums = counting;
+    step.apart = counting || !moveNodes;
+    moved_ = moveNodes;
     if (!sweep_.step(step)) stopDiverged();
     if (!movesShared())
         for (const int i : shared_) scene->forces.addForce(membrane->bodyIds[i], sweep_.force(i));
@@ -252,12 +292,12 @@ void MembraneIntegrator::writeBack() {
 
 Vector3r MembraneIntegrator::positionSeen(int node) const {
     // Where it was before it moved here; shared nodes are still there in the arrays.
-    const bool moved = !std::binary_search(shared_.begin(), shared_.end(), node) && moveNodes;
+    const bool moved = moved_ && !std::binary_search(shared_.begin(), shared_.end(), node);
     return moved ? Vector3r(sweep_.x.at(node) - movedStep * sweep_.v.at(node)) : Vector3r(sweep_.x.at(node));
 }
 
 Vector3r MembraneIntegrator::velocitySeen(int node) const {
-    const bool moved = !std::binary_search(shared_.begin(), shared_.end(), node) && moveNodes;
+    const bool moved = moved_ && !std::binary_search(shared_.begin(), shared_.end(), node);
     return moved ? Vector3r(3. * sweep_.v.at(node) - 2. * sweep_.u.at(node)) : Vector3r(sweep_.v.at(node));
 }
 

@@ -55,12 +55,15 @@ private:
     const Scene* scene_ = nullptr;                                ///< whose nodes the arrays hold
     bool bodiesCurrent_ = true; ///< the bodies hold what the arrays hold, but for changes by hand
     bool forget_ = false;
+    bool moved_ = false;                 ///< whether the last step did
     NewtonIntegrator* newton_ = nullptr; ///< of the scene, in this step
     vector<Vector3r> outsideShared_;     ///< forces [N] from outside on the shared nodes, if they move here
     int sinceExchange_ = 0;
     unsigned long syncs_ = 0; ///< how often the scene's forces had been summed, or will have been, since the last step
 
     bool belongsHere(int node) const;
+    int wantedParts() const;
+    void checkEngines() const;
     void findIntegrator();
     bool movesShared() const { return !newton_ || newton_->dead; }
     void moveShared();

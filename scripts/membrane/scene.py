@@ -13,8 +13,9 @@ LARGE = 100_000  # nodes: adding so many takes about a second, so that progress 
 ADDING = {"rest state": 2, "bodies": 2, "interactions": 6}  # stages and their shares of the time
 
 PATHS = ("law2", "fused")
+NODE_MASK = 1 << 29  # of nodes of a MembraneIntegrator
 # What NewtonIntegrator moves: all but facets of the spool and nodes of a MembraneIntegrator.
-INTEGRATED = (1 << 29) - 1 - spool.SPOOL_MASK
+INTEGRATED = NODE_MASK - 1 - spool.SPOOL_MASK
 
 _plugin = _load.load()
 
@@ -219,6 +220,9 @@ def set_engines(
     else:
         if not membrane.hasInteractions:
             membrane.addInteractions()
+        for body in (scene.bodies[i] for i in membrane.bodyIds):
+            if body.mask == NODE_MASK:  # a MembraneIntegrator had them
+                body.mask = 1
         geometry = [_plugin["Ig2_Sphere_Sphere_MembraneGeom"]()]
         physics = [_plugin["Ip2_MembraneMat_MembraneMat_MembranePhys"](membrane=membrane)]
         laws = [_plugin["Law2_MembraneGeom_MembranePhys_Buckling"]()]
@@ -228,7 +232,10 @@ def set_engines(
         bounds = [yade.Bo1_Sphere_Aabb(), yade.Bo1_Facet_Aabb()]
         collider = [
             yade.InsertionSortCollider(
-                bounds, verletDist=spool.VERLET_DISTANCE, targetInterv=-1, avoidSelfInteractionMask=spool.NO_SELF_CONTACT
+                bounds,
+                verletDist=spool.VERLET_DISTANCE,
+                targetInterv=-1,
+                avoidSelfInteractionMask=spool.NO_SELF_CONTACT,
             )
         ]
         geometry.append(yade.Ig2_Facet_Sphere_ScGeom())
@@ -289,6 +296,11 @@ def advance(steps):
     try:
         for _ in range(steps):
             step()
+    except BaseException:
+        for engine in scene.engines:
+            if isinstance(engine, _plugin["MembraneForceEngine"]):
+                engine.writeBack()
+        raise
     finally:
         scene.stopAtIter = 0
 
@@ -296,9 +308,21 @@ def advance(steps):
 def compute_forces(sail):
     """Forces (N, 3) [N] on the nodes in the present state, gravity apart: nothing moves.
 
-    It takes a step of YADE in which neither integrator, rotation nor ledger takes part.
+    It takes a step of YADE in which neither integrator, rotation nor ledger takes part, nor any
+    other membrane.
     """
-    movers = (sail.rotation, sail.spool, sail.newton, sail.ledger)
+    kinds = (
+        yade.NewtonIntegrator,
+        yade.KinematicEngine,
+        _plugin["SpoolRotation"],
+        _plugin["MembraneLedger"],
+    )
+    movers = []
+    for engine in yade.Omega().engines:
+        forces = isinstance(engine, _plugin["MembraneForceEngine"])
+        other = forces and engine.membrane.bodyIds != sail.membrane.bodyIds
+        if other or isinstance(engine, kinds):
+            movers.append(engine)
     were_dead = [engine.dead for engine in movers]
     for engine in movers:
         engine.dead = True

@@ -6,8 +6,8 @@ from math import cos, hypot, pi, sin
 from yade import utils
 from yade.wrapper import FrictMat, Omega
 
-# A body collides with the spool if its mask has SPOOL_MASK and any other bit. NewtonIntegrator leaves
-# alone bodies that have no other: the facets, which SpoolRotation moves.
+# A body collides with the spool if its mask has SPOOL_MASK. NewtonIntegrator leaves alone bodies
+# that have no other bit: the facets, which SpoolRotation moves.
 SPOOL_MASK = 1 << 28
 TETHER_MASK = SPOOL_MASK | 1 << 27
 # Bodies of one and the same mask that share a bit with this one do not collide with one another:

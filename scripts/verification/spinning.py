@@ -7,6 +7,7 @@ is in the inertial frame: v = omega x r, plus a small velocity in the shapes of 
 once. Displacements are projected on each shape, and a sinusoid is fitted to each projection.
 """
 
+import time
 from dataclasses import dataclass
 
 import numpy as np
@@ -114,24 +115,18 @@ def imbalance(sail):
 
     Both are those of the engines, in one step in which nothing moves.
     """
-    run_engines = {sail.newton: sail.newton.dead, sail.rotation: sail.rotation.dead}
     omega = yade.Omega()
-    sail.field.omega, sail.field.dead, sail.ledger.dead = OMEGA, False, True
-    for engine in run_engines:
-        engine.dead = True
+    sail.field.omega, sail.field.dead, sail.resetter.dead = OMEGA, False, False
     omega.dt = 1e-3 * sail.forces.criticalTimeStep()
-    omega.step()
+    forces = scene.compute_forces(sail)
     sail.field.dead = True
-    for engine, dead in run_engines.items():
-        engine.dead = dead
     bodies = [omega.bodies[i] for i in sail.membrane.bodyIds]
     free = np.array(["x" not in body.state.blockedDOFs for body in bodies])
-    forces = np.array([omega.forces.f(body.id, True) for body in bodies])
     outward = OMEGA**2 * sail.masses() * np.linalg.norm(sail.positions()[:, :2], axis=1)
     return float(np.abs(forces[free]).max() / outward.max())
 
 
-def spin(sail, positions, kick, turns):
+def spin(sail, positions, kick, turns, step=STEP):
     """Release the membrane in its rotating equilibrium, with a kick, and watch it.
 
     Parameters
@@ -142,6 +137,8 @@ def spin(sail, positions, kick, turns):
     kick : (N, 3) float
         Velocity [m/s] at the start relative to the turning frame.
     turns : float
+    step : float
+        O.dt over the critical time step, at most.
 
     Returns
     -------
@@ -149,20 +146,25 @@ def spin(sail, positions, kick, turns):
         [s]
     moved : (S, N, 3) float
         Displacements in the turning frame [m].
+    step_time : float
+        Processor time of a step [s].
     """
     omega = yade.Omega()
     interval = 2 * np.pi / (OMEGA * SAMPLES_PER_TURN)
-    stride = int(np.ceil(interval / (STEP * sail.forces.criticalTimeStep())))
+    stride = int(np.ceil(interval / (step * sail.forces.criticalTimeStep())))
     omega.dt = interval / stride
     scene.set_spin(sail, OMEGA)
     # The leapfrog's velocities belong to half a step before the positions.
     for i, v in zip(sail.membrane.bodyIds, kick @ turn(-0.5 * OMEGA * omega.dt).T):
         omega.bodies[i].state.vel = np.add(omega.bodies[i].state.vel, v).tolist()
-    moved = [np.zeros_like(positions)]
+    moved, taken = [np.zeros_like(positions)], 0.0
     for sample in range(1, round(turns * SAMPLES_PER_TURN) + 1):
+        begun = time.process_time()
         scene.advance(stride)
+        taken += time.process_time() - begun
         moved.append(sail.positions() @ turn(-OMEGA * interval * sample).T - positions)
-    return interval * np.arange(len(moved)), np.array(moved)
+    step_time = taken / (stride * (len(moved) - 1))
+    return interval * np.arange(len(moved)), np.array(moved), step_time
 
 
 def fit_frequency2(times, values):
@@ -308,7 +310,7 @@ def spin_string(
     masses = sail.masses()
     shapes = lateral_modes(np.array(chain.tensions()), np.array(chain.lengths()), masses, modes)
     kick = np.outer(AMPLITUDE * OMEGA * shapes.sum(axis=1), [0, 1, 1])
-    times, moved = spin(sail, nodes, kick, turns)
+    times, moved, _ = spin(sail, nodes, kick, turns)
 
     free = slice(1, None)
     in_plane, flap = (
@@ -359,6 +361,8 @@ class SpunDisk:
         Sides shorter than their critical length at any time.
     imbalance : float
         See `imbalance`.
+    dt, step_time : float
+        Time step, and the processor time of one [s].
     """
 
     frequency: dict
@@ -370,6 +374,8 @@ class SpunDisk:
     compressed: float
     buckled: int
     imbalance: float
+    dt: float
+    step_time: float
 
 
 def spinning_net(nodes, net):
@@ -455,7 +461,7 @@ def band_means(errors, r, areas):
     return np.array([np.bincount(band, areas * e, DISK_BANDS) / weights for e in errors.T])
 
 
-def spin_disk(cells, *, even=True, poisson=DISK_POISSON, turns=1.5):
+def spin_disk(cells, *, even=True, poisson=DISK_POISSON, turns=1.5, path="law2", step=STEP):
     """Spin a free disk of film of radius 1 m and measure its stress and lowest modes.
 
     Parameters
@@ -467,6 +473,10 @@ def spin_disk(cells, *, even=True, poisson=DISK_POISSON, turns=1.5):
     poisson : float
         Of the film.
     turns : float
+    path : str
+        Of `scene.set_engines`.
+    step : float
+        O.dt over the critical time step, at most.
 
     Returns
     -------
@@ -479,7 +489,7 @@ def spin_disk(cells, *, even=True, poisson=DISK_POISSON, turns=1.5):
     nodes, triangles = disk_mesh(cells, even)
     film = scene.film(young, poisson, DISK_DENSITY, DISK_THICKNESS)
     net = scene.add_membrane(nodes, triangles, material=film)
-    sail = scene.set_engines(net)
+    sail = scene.set_engines(net, path=path)
     spun = spinning_net(nodes, net)
     place(sail, spun)
     unbalanced = imbalance(sail)
@@ -497,7 +507,7 @@ def spin_disk(cells, *, even=True, poisson=DISK_POISSON, turns=1.5):
     masses = sail.masses()
     names, shapes = disk_shapes(spun, masses)
     kick = np.outer(AMPLITUDE * OMEGA * shapes.sum(axis=1), [0, 0, 1])
-    times, moved = spin(sail, spun, kick, turns)
+    times, moved, step_time = spin(sail, spun, kick, turns, step)
     frequency = np.sqrt(frequencies2(times, moved[:, :, 2], shapes, masses))
     by_name = {n: frequency[[m == n for m in names]] for n in DISK_MODES}
     lengths = np.array([net.lengths((spun + shift).tolist()) for shift in moved[::5]])
@@ -511,6 +521,8 @@ def spin_disk(cells, *, even=True, poisson=DISK_POISSON, turns=1.5):
         compressed=float(np.mean(lengths[0] < np.array(net.restLengths))),
         buckled=int(np.sum(lengths.min(axis=0) < np.array(net.criticalLengths))),
         imbalance=unbalanced,
+        dt=yade.Omega().dt,
+        step_time=step_time,
     )
 
 

@@ -1,0 +1,278 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Charts accuracy against time: path, time step, mesh and parts left out, on one grid.
+
+Three questions, each with its error and its processor time on one thread: the early deployment
+curve against the finest mesh, the spinning disk's frequencies against the closed form, and the
+energy ledger. Run it by `scripts/run.sh chart [options]`. Writes reference/chart.csv and chart.png.
+"""
+
+import argparse
+import statistics
+import sys
+import time
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from membrane import scene
+from membrane.parameters import SailParameters
+from yade import wrapper as yade
+
+SCRIPTS = Path(sys.argv[0]).resolve().parent  # YADE keeps __file__ for itself
+sys.path.append(str(SCRIPTS))
+
+from verification import deployment, spinning  # noqa: E402  (found only now)
+
+REFERENCE = SCRIPTS.parent / "reference"
+DURATION, INTERVAL = 0.1, 1e-3  # of the deployments [s]; single curves can be compared so long
+FINEST = {"refine": 6, "dt": 1e-6}
+TURNS = 1.5  # of the disks
+
+HEADER = """\
+# Accuracy against time. Made by `scripts/run.sh chart`, on one thread.
+# question: "deployment": rms error of the deployment rate [-] over the first 0.1 s, against
+#   refine = 6, dt = 1e-6 s; "ledger": largest energy imbalance over kinetic energy [-] in the same
+#   runs; "disk": largest relative error of the frequencies of modes (2,0), (0,1), (3,0)
+# part: what was left out; mesh: refine of the sail, cells of the disk; dt_s: time step [s]
+# us_per_step: processor time of a step [us]; cost_s: that of the paper's 1 s of deployment, or of
+#   one turn of the disk [s]; pareto: 1 if nothing is both cheaper and more accurate
+"""
+COLUMNS = "question,path,part,mesh,nodes,dt_s,us_per_step,cost_s,error,pareto"
+
+
+@dataclass
+class Point:
+    """One setting and what came of it."""
+
+    question: str
+    path: str
+    part: str
+    mesh: int
+    nodes: int
+    dt: float
+    us_per_step: float
+    cost: float
+    error: float
+    pareto: bool = False
+
+    def line(self):
+        """Its row of the table."""
+        return (
+            f'{self.question},{self.path},"{self.part}",{self.mesh},{self.nodes},{self.dt:.4g},'
+            f"{self.us_per_step:.4g},{self.cost:.4g},{self.error:.4g},{int(self.pareto)}"
+        )
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A deployment on the grid.
+
+    Attributes
+    ----------
+    changes : dict
+        Of SailParameters.
+    part : str
+        What was left out.
+    ledger, rests : bool
+        Keep the ledger; the sail rests elsewhere, so that it must be spun up anew.
+    """
+
+    changes: dict = field(default_factory=dict)
+    part: str = ""
+    ledger: bool = True
+    rests: bool = False
+
+    def parameters(self):
+        """Its SailParameters."""
+        return replace(SailParameters(duration=DURATION), **self.changes)
+
+    def start(self):
+        """Positions (N, 3) [m] at the release; the fused path finds them for both."""
+        p = self.parameters()
+        rested = p if self.rests else SailParameters(refine=p.refine)
+        return deployment.equilibrium(replace(rested, path="fused"))
+
+    def step_time(self, steps):
+        """Processor time of a step [s], soon after the release."""
+        deployment.begin(self.parameters(), self.start(), self.ledger)
+        scene.advance(steps // 10)
+        begun = time.process_time()
+        scene.advance(steps)
+        return (time.process_time() - begun) / steps
+
+
+def grid(quick):
+    """Settings of the deployments."""
+    steps = {1: (1e-5, 5e-6, 2.5e-6, 1.25e-6), 2: (5e-6, 2.5e-6), 3: (2.5e-6, 1.25e-6)}
+    steps |= {} if quick else {4: (2.5e-6, 1.25e-6)}
+    fused = [Setting({"refine": n, "dt": dt}) for n in steps for dt in steps[n]]
+    slow = [(1, 1e-5), (1, 5e-6), (1, 2.5e-6)] + ([] if quick else [(2, 5e-6), (3, 2.5e-6)])
+    law2 = [Setting({"path": "law2", "refine": n, "dt": dt}) for n, dt in slow]
+    parts = []
+    for refine, dt in ((1, 5e-6),) if quick else ((1, 5e-6), (2, 5e-6)):
+        base = {"refine": refine, "dt": dt}
+        parts += [
+            Setting({**base, "beta": 0.0}, "creases", rests=True),
+            Setting({**base, "air_density": 0.0}, "drag"),
+            Setting({**base, "zeta": 0.0}, "damping"),
+            Setting({**base, "gravity": 0.0}, "gravity", rests=True),
+            Setting(base, "ledger", ledger=False),
+        ]
+    return fused + law2 + parts
+
+
+def deployments(settings, rounds, steps, tell):
+    """Points of the questions "deployment" and "ledger"."""
+    tell(f"the reference, refine = {FINEST['refine']}")
+    finest = deployment.deploy(SailParameters(duration=DURATION, **FINEST), INTERVAL, ledger=False)
+    errors = {}
+    for setting in settings:
+        p = setting.parameters()
+        tell(f"{p.path}, refine = {p.refine}, dt = {p.dt:g} s, without {setting.part or 'nothing'}")
+        run = deployment.deploy(p, INTERVAL, positions=setting.start(), ledger=setting.ledger)
+        curve = deployment.rms(run.rate - finest.rate)
+        energy = np.abs(run.balance).max() / kinetic_energy(p, run) if setting.ledger else np.nan
+        errors[id(setting)] = curve, energy, run.positions.shape[1]
+    taken = {id(setting): [] for setting in settings}
+    for turn in range(rounds):
+        tell(f"times, round {turn + 1} of {rounds}")
+        for setting in settings:
+            refine = setting.parameters().refine
+            taken[id(setting)].append(setting.step_time(max(50, steps // refine**2)))
+    points = []
+    for setting in settings:
+        p, (curve, energy, nodes) = setting.parameters(), errors[id(setting)]
+        step = statistics.median(taken[id(setting)])
+        about = p.path, setting.part, p.refine, nodes, p.dt, 1e6 * step, step / p.dt
+        points.append(Point("deployment", *about, curve))
+        if setting.ledger:
+            points.append(Point("ledger", *about, energy))
+    return points
+
+
+def kinetic_energy(p, run):
+    """Of the sail that turns at p.omega as it is at the release [J]."""
+    _, built = deployment.begin(p, run.positions[0])
+    radius2 = np.sum(run.positions[0][:, :2] ** 2, axis=1)
+    return 0.5 * p.omega**2 * np.sum(built.masses() * radius2)
+
+
+def disks(quick, tell):
+    """Points of the question "disk"."""
+    points = []
+    modes = {name: spinning.DISK_MODES[name] for name in ("(2,0)", "(0,1)", "(3,0)")}
+    for cells in (8, 16) if quick else (8, 16, 32):
+        for path in scene.PATHS:
+            for share in (0.9, 0.45):
+                tell(f"disk of {cells} cells, {path}, {share:g} of the critical step")
+                disk = spinning.spin_disk(cells, turns=TURNS, path=path, step=share)
+                error = max(
+                    abs(
+                        disk.frequency[name]
+                        / spinning.disk_frequency(*mode, spinning.LATTICE_POISSON)
+                        - 1
+                    )
+                    for name, mode in modes.items()
+                )
+                steps = 2 * np.pi / spinning.OMEGA / disk.dt
+                nodes = len(yade.Omega().bodies)
+                about = path, "", cells, nodes, disk.dt, 1e6 * disk.step_time
+                points.append(Point("disk", *about, disk.step_time * steps, error))
+    return points
+
+
+def mark_pareto(points):
+    """Mark the points that none of the same question beats in both cost and error."""
+    for point in points:
+        rivals = [q for q in points if q.question == point.question and q is not point]
+        point.pareto = not any(
+            q.cost <= point.cost
+            and q.error <= point.error
+            and (q.cost < point.cost or q.error < point.error)
+            for q in rivals
+        )
+
+
+TITLES = {
+    "deployment": ("Early deployment curve", "processor time for 1 s [s]", "rms error of rate [-]"),
+    "disk": ("Spinning disk", "processor time for a turn [s]", "error of frequencies [-]"),
+    "ledger": ("Energy ledger", "processor time for 1 s [s]", "imbalance / kinetic energy [-]"),
+}
+COLOURS = {1: "C0", 2: "C1", 3: "C2", 4: "C3", 8: "C0", 16: "C1", 32: "C2"}
+
+
+def draw(points, path):
+    """Draw the three questions side by side."""
+    figure = Figure(figsize=(15, 5), layout="constrained")
+    for axes, (question, (title, cost, error)) in zip(figure.subplots(1, 3), TITLES.items()):
+        chosen = [p for p in points if p.question == question]
+        for p in chosen:
+            marker = "x" if p.part else {"fused": "o", "law2": "s"}[p.path]
+            fill = "none" if p.path == "law2" else "full"
+            axes.plot(p.cost, p.error, marker, color=COLOURS[p.mesh], fillstyle=fill)
+            if p.part:
+                axes.annotate(
+                    p.part, (p.cost, p.error), (4, 3), textcoords="offset points", fontsize=7
+                )
+        front = sorted((p for p in chosen if p.pareto), key=lambda p: p.cost)
+        axes.plot([p.cost for p in front], [p.error for p in front], "k--", lw=0.8, zorder=0)
+        for p in front:
+            axes.annotate(
+                f"{p.dt:.2g} s",
+                (p.cost, p.error),
+                (-4, -11),
+                textcoords="offset points",
+                fontsize=7,
+            )
+        axes.set(xscale="log", yscale="log", title=title, xlabel=cost, ylabel=error)
+        axes.grid(alpha=0.3, which="both")
+        name = "cells" if question == "disk" else "refine"
+        handles = [
+            Line2D([], [], marker="o", ls="", color=COLOURS[n], label=f"{name} = {n}")
+            for n in sorted({p.mesh for p in chosen})
+        ]
+        handles.append(Line2D([], [], marker="o", ls="", color="grey", label="fused"))
+        handles.append(Line2D([], [], marker="s", ls="", color="grey", mfc="none", label="law2"))
+        if any(p.part for p in chosen):
+            handles.append(
+                Line2D([], [], marker="x", ls="", color="grey", label="fused, without …")
+            )
+        handles.append(Line2D([], [], color="k", ls="--", lw=0.8, label="Pareto front, with dt"))
+        axes.legend(handles=handles, fontsize=7)
+    figure.savefig(path, dpi=100)
+
+
+def main():
+    """Run the grid, write table and picture."""
+    parser = argparse.ArgumentParser(prog="chart", description=__doc__.splitlines()[0])
+    parser.add_argument("--rounds", type=int, default=3, help="rounds of the timing")
+    parser.add_argument("--steps", type=int, default=4000, help="steps of each, at refine = 1")
+    parser.add_argument("--quick", action="store_true", help="a small grid")
+    parser.add_argument("--out", type=Path, default=REFERENCE, help="folder for chart.csv and .png")
+    arguments = parser.parse_args()
+    start = time.perf_counter()
+
+    def tell(text):
+        print(f"chart: {time.perf_counter() - start:5.0f} s: {text}", file=sys.stderr, flush=True)
+
+    points = deployments(grid(arguments.quick), arguments.rounds, arguments.steps, tell)
+    points += disks(arguments.quick, tell)
+    mark_pareto(points)
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    table = arguments.out / "chart.csv"
+    table.write_text(HEADER + "\n".join([COLUMNS, *(p.line() for p in points)]) + "\n")
+    draw(points, arguments.out / "chart.png")
+    for question in TITLES:
+        for p in sorted((p for p in points if p.question == question), key=lambda p: p.cost):
+            print(
+                f"{question:10s} {p.path:5s} mesh {p.mesh:2d} dt {p.dt:8.3g} s {p.cost:8.3g} s "
+                f"error {p.error:9.3g} {'*' if p.pareto else ' '} "
+                f"{'without ' + p.part if p.part else ''}"
+            )
+    print(f"Wrote {table} and {arguments.out / 'chart.png'}")
+    tell("done")
+
+
+main()
