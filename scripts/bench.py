@@ -1,128 +1,114 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Speed of the plugin beside YADE's own functors, measured in one run, turn by turn.
+"""Measures the speed of the plugin and writes reference/bench.json.
 
-Run it by `scripts/run.sh bench [options]`. Prints, writes nothing.
+Run it by `scripts/run.sh bench [options]`, or by `yade -n -x scripts/bench.py [options]`. All
+that is compared is measured turn by turn in one run: on one thread in processor time, on several
+in wall time, while the machine does nothing else. Targets are reported, not asserted: the exit
+status is 0 whenever the measurements were possible.
 """
 
 import argparse
-import statistics
-import time
+import datetime
+import importlib
+import sys
+from pathlib import Path
 
-import numpy as np
-from membrane import sail, scene
-from membrane.mesh import sail_mesh
-from membrane.parameters import SailParameters
-from yade import wrapper as yade
+SCRIPTS = Path(sys.argv[0]).resolve().parent  # YADE keeps __file__ for itself
+sys.path.append(str(SCRIPTS))
+
+import benchmarks  # noqa: E402  (found only now)
+from benchmarks import lammps, results  # noqa: E402
+from benchmarks.quiet import Quiet  # noqa: E402
+from membrane.sail import versions  # noqa: E402
+
+MODULES = {
+    "loops": "functors and engine of path law2 beside YADE's own sphere contact",
+    "springs": "sheets beside bare springs in LAMMPS, one thread",
+    "paths": "path fused beside path law2",
+    "sizes": "time, memory and building a node, from a thousand nodes to a million",
+    "deployment": "the paper's sail, fold to fullest",
+    "threads": "two threads beside one, and beside LAMMPS on two",
+}
+RESULTS = SCRIPTS.parent / "reference" / "bench.json"
 
 
-def membrane_loop(mesh):
-    """Engines and interactions of the plugin on the flat sail."""
-    membrane = scene.add_membrane(
-        mesh.nodes, mesh.triangles, mesh.creases, mesh.crease_signs, mesh.cables
+def command_line():
+    """Parsed sys.argv."""
+    about = "; ".join(f"{name}: {text}" for name, text in MODULES.items())
+    parser = argparse.ArgumentParser(
+        prog="bench", description=__doc__.splitlines()[0], epilog=about
     )
-    engines = scene.set_engines(membrane)
-    engines.forces.forceTimeStep = True
-    loop = [e for e in yade.Omega().engines if isinstance(e, yade.InteractionLoop)]
-    yade.Omega().engines = [yade.ForceResetter(), *loop]
-
-
-def contact_loop(mesh):
-    """YADE's own sphere contacts on the same pairs of the same nodes."""
-    pairs = np.concatenate([mesh.sides, mesh.cables])
-    spans = np.linalg.norm(mesh.nodes[pairs[:, 0]] - mesh.nodes[pairs[:, 1]], axis=1)
-    omega, material = yade.Omega(), yade.FrictMat()
-    omega.materials.append(material)
-    for position in mesh.nodes.tolist():
-        body = yade.Body()
-        body.bounded = False
-        body.shape = yade.Sphere(radius=0.51 * spans.max())
-        body.material = material
-        body.state.pos, body.state.mass, body.state.inertia = position, 1.0, (1.0, 1.0, 1.0)
-        omega.bodies.append(body)
-    omega.engines = [
-        yade.ForceResetter(),
-        yade.InteractionLoop(
-            [yade.Ig2_Sphere_Sphere_ScGeom()],
-            [yade.Ip2_FrictMat_FrictMat_FrictPhys()],
-            [yade.Law2_ScGeom_FrictPhys_CundallStrack()],
-        ),
-    ]
-    from yade import utils
-
-    for a, b in pairs.tolist():
-        utils.createInteraction(a, b)
-
-
-def loop_time(build, mesh, steps):
-    """Time [ns] of the InteractionLoop for one step and interaction."""
-    omega = yade.Omega()
-    omega.reset()
-    build(mesh)
-    omega.dt = 1e-12
-    scene.advance(steps // 10)
-    loop = omega.engines[1]
-    links = omega.interactions.countReal()
-    omega.timingEnabled, loop.execTime, loop.execCount = True, 0, 0
-    scene.advance(steps)
-    omega.timingEnabled = False
-    assert omega.interactions.countReal() == links == len(mesh.sides) + len(mesh.cables)
-    return loop.execTime / loop.execCount / links
-
-
-def compare_loops(refine, rounds, steps):
-    """Print time per side of both loops, alternating, and their ratio."""
-    mesh = sail_mesh(refine=refine)
-    ours, theirs = [], []
-    for _ in range(rounds):
-        ours.append(loop_time(membrane_loop, mesh, steps))
-        theirs.append(loop_time(contact_loop, mesh, steps))
-    ratio = statistics.median(a / b for a, b in zip(ours, theirs))
-    print(
-        f"{len(mesh.nodes):6d} nodes {len(mesh.sides) + len(mesh.cables):6d} sides: "
-        f"membrane {statistics.median(ours):6.1f} ns a side, "
-        f"YADE's sphere contact {statistics.median(theirs):6.1f} ns, ratio {ratio:.2f}"
+    parser.add_argument(
+        "--only",
+        nargs="+",
+        choices=MODULES,
+        metavar="MODULE",
+        default=list(MODULES),
+        help="run only these; the others keep their results in the file",
     )
-
-
-def deployment(duration):
-    """Print where the time of the released sail goes."""
-    omega = yade.Omega()
-    omega.reset()
-    p = SailParameters(duration=duration)
-    mesh, engines = sail.build(p)
-    start = time.perf_counter()
-    sail.spin_up(engines, p)
-    spun = time.perf_counter()
-    omega.dt = p.dt
-    scene.release(engines, p.omega, mesh.guide_nodes.ravel())
-    steps = round(duration / p.dt)
-    omega.timingEnabled = True
-    for engine in omega.engines:
-        engine.execTime, engine.execCount = 0, 0
-    scene.advance(steps)
-    wall = time.perf_counter() - spun
-    omega.timingEnabled = False
-    print(f"\nThe paper's sail: spin-up {spun - start:.1f} s of wall time,")
-    print(
-        f"then {1e6 * wall / steps:.1f} us a step, so {wall / steps / p.dt:.0f} s for each second"
+    parser.add_argument(
+        "--no-deployment", action="store_true", help="leave out the paper's deployment"
     )
-    print("of deployment. Of a step:")
-    for engine in sorted(omega.engines, key=lambda e: -e.execTime):
-        if engine.execCount:
-            name = type(engine).__name__
-            print(f"  {name:24s} {engine.execTime / steps / 1e3:7.2f} us")
+    parser.add_argument("--rounds", type=int, default=7, help="of each comparison (default 7)")
+    parser.add_argument(
+        "--patience",
+        type=float,
+        default=120.0,
+        help="time that a module may lose by waiting for a machine without other work, and by "
+        "repeating what was disturbed [s] (default 120)",
+    )
+    parser.add_argument(
+        "--quick", action="store_true", help="small sizes and short turns; write no file"
+    )
+    arguments = parser.parse_args()
+    if arguments.rounds < 1:
+        parser.error(f"--rounds {arguments.rounds}: must be at least 1")
+    return arguments
+
+
+def made_with():
+    """Versions of everything, the machine, and the date."""
+    used = versions()
+    del used["threads"]
+    return {
+        **used,
+        "lammps": lammps.version(),
+        "processor": results.processor(),
+        "date": datetime.date.today().isoformat(),
+    }
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="bench", description=__doc__.splitlines()[0])
-    parser.add_argument("--rounds", type=int, default=5, help="rounds of each comparison")
-    parser.add_argument("--steps", type=int, default=2000, help="steps of each round")
-    parser.add_argument("--duration", type=float, default=0.05, help="of the sail's run [s]")
-    arguments = parser.parse_args()
-    print("InteractionLoop alone, medians of paired rounds:")
-    for refine in (1, 2):
-        compare_loops(refine, arguments.rounds, arguments.steps)
-    deployment(arguments.duration)
+    """Measure, print the tables, write the file; returns the exit status."""
+    arguments = command_line()
+    tell = benchmarks.announcer("bench")
+    settings = benchmarks.Settings(
+        rounds=arguments.rounds,
+        quick=arguments.quick,
+        quiet=Quiet(tell),
+        tell=tell,
+    )
+    left_out = ["deployment"] if arguments.no_deployment else []
+    chosen = [name for name in MODULES if name in arguments.only and name not in left_out]
+    made_of, met = results.commit(), []
+    for number, name in enumerate(chosen, start=1):
+        tell(f"{number} of {len(chosen)}, {name}: {MODULES[name]}")
+        settings.quiet.patience = arguments.patience
+        try:
+            found = importlib.import_module(f"benchmarks.{name}").measure(settings)
+        except RuntimeError as error:
+            print(f"bench: {name}: {error}", file=sys.stderr)
+            return 1
+        print("\n".join(results.table(name, found)), flush=True)
+        met += [entry.holds for entry in found if entry.bound]
+        if not arguments.quick:
+            rows = results.as_rows(name, found, made_of)
+            results.save(RESULTS, name, rows, made_with(), list(MODULES))
+    print(f"{sum(met)} of {len(met)} targets are met.")
+    if not arguments.quick:
+        print(f"Results are in {RESULTS}")
+    tell("done")
+    return 0
 
 
-main()
+sys.exit(main())

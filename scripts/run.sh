@@ -11,7 +11,8 @@ usage: scripts/run.sh COMMAND [options]
                             options of scripts/deploy.py, listed by `scripts/run.sh deploy --help`
   test [-j N] [--full] [MODULE ...]
                             run the tests, or those of some modules; --full adds the long ones
-  bench [-j N] [options]    measure the speed; options of scripts/bench.py
+  bench [options]           measure the speed beside YADE's own functors and LAMMPS: tables, and
+                            reference/bench.json; options of scripts/bench.py
   verify [options]          hold the plugin against closed forms and an independent implementation:
                             a table, and reference/verification.json; options of scripts/verify.py
   stability [options]       scan where each part of the method fails, into reference/stability
@@ -28,10 +29,11 @@ Each command first installs the Debian packages it lacks. To start YADE by hand:
 END
 }
 
-# Debian packages to build and run, to verify, and to format.
+# Debian packages to build and run, to verify, to compare the speed with, and to format.
 run_packages=(yade python3-numpy python3-matplotlib python3-vtk9
     g++ cmake make libboost-dev libeigen3-dev python3-dev libgtest-dev)
 verify_packages=(calculix-ccx python3-scipy)
+bench_packages=(lammps openmpi-bin)
 format_packages=(clang-format black python3-flake8 shellcheck)
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
@@ -183,6 +185,7 @@ test)
     run_tests "$@"
     ;;
 bench)
+    need "${bench_packages[@]}"
     compile
     run_yade "$root/scripts/bench.py" "$@"
     ;;

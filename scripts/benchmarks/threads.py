@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Two threads of the fused path beside one, and beside two of LAMMPS: in wall time."""
+
+from . import AT_LEAST, FUSED, springs
+from .cases import FORCES, PERIODS, label, plan, steps
+from .sheet import SIDES
+from .turns import entry, ratio_entry, take_turns
+from .workers import workers
+
+LEAST = {SIDES[0]: 1.0, SIDES[1]: 1.6, SIDES[2]: 1.6}
+
+
+def measure(settings):
+    """Entries of how many times faster two threads are than one, and than LAMMPS on two."""
+    found = []
+    for side in settings.sizes(LEAST):
+        found += springs.measure_sheet(side, 2, settings)
+        settings.tell(f"one thread and two on {side * side} nodes")
+        for everything in FORCES:
+            found += measure_case(side, (FUSED, everything, max(PERIODS)), settings)
+    return found
+
+
+def measure_case(side, case, settings):
+    """Entries for one sheet and case."""
+    nodes = side * side
+    many = steps(settings, nodes)
+    with workers({threads: plan(side, threads, *case) for threads in (1, 2)}) as started:
+        times = take_turns(
+            {n: lambda w=w: w.measure(many)["seconds"] for n, w in started.items()},
+            settings.rounds,
+            settings.quiet,
+            wait=True,
+        )
+    name, unit = label(*case), "ns a node and step"
+    found = [
+        entry(f"threads: {name}", [1e9 / nodes * t for t in times[n]], unit, nodes, threads=n)
+        for n in times
+    ]
+    wanted = {"threads": 2, "target": LEAST[side], "bound": AT_LEAST}
+    found.append(ratio_entry(f"{name}, one thread over two", *times.values(), nodes, **wanted))
+    return settings.quiet.mark(found)

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Paired measurements: everything once in every round, ratios within a round, medians over them."""
+
+import statistics
+
+from . import Entry
+
+FEWER = 3  # rounds beside other work, where wall time counts
+
+
+def take_turns(takers, rounds, quiet, wait=False):
+    """Measure everything `rounds` times, turn by turn, every other round in reverse.
+
+    Parameters
+    ----------
+    takers : dict
+        Functions without arguments that return a number, by name.
+    rounds : int
+    quiet : Quiet
+    wait : bool
+        For a machine that does nothing else: where wall time counts.
+
+    Returns
+    -------
+    dict
+        A list of `rounds` numbers for each name; of FEWER if `wait` was in vain.
+    """
+    found = {name: [] for name in takers}
+    for number in range(rounds):
+        if wait and quiet.patience <= 0 and number >= FEWER:
+            break  # more of them would tell no more, and take long
+        names = list(takers) if number % 2 == 0 else list(reversed(takers))
+        for name, taken in quiet.measure(
+            lambda order=names: [(name, takers[name]()) for name in order], wait
+        ):
+            found[name].append(taken)
+    return found
+
+
+def ratios(above, below):
+    """Ratios of two lists of paired numbers, pair by pair."""
+    if len(above) != len(below) or not above:
+        raise ValueError(f"{len(above)} and {len(below)} numbers make no pairs")
+    return [a / b for a, b in zip(above, below)]
+
+
+def entry(name, numbers, unit, nodes, **more):
+    """An Entry of the median of `numbers`, with their spread."""
+    return Entry(
+        name, statistics.median(numbers), unit, nodes, spread=(min(numbers), max(numbers)), **more
+    )
+
+
+def ratio_entry(name, above, below, nodes, **more):
+    """An Entry of the median of paired ratios, and of the ratio of the best of either."""
+    best = min(above) / min(below)
+    return entry(name, ratios(above, below), "-", nodes, best=best, **more)

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Workers: processes of YADE, each with a scene of its own, that measure when they are asked.
+
+They stay while the others take their turns, so that each scene is built only once.
+"""
+
+import json
+import subprocess
+import tempfile
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+SCRIPT = Path(__file__).resolve().with_name("worker.py")
+MARK = "worker: "  # begins the lines that are answers; YADE prints others
+
+
+class Worker:
+    """A process of YADE with one of situations.ALL in its scene.
+
+    Parameters
+    ----------
+    situation : str
+    threads : int
+    **options
+        Of the situation.
+    """
+
+    def __init__(self, situation, threads=1, **options):
+        self.name = f"{situation} {options} on {threads} threads"
+        self.said = tempfile.TemporaryFile("w+")
+        asked = {"situation": situation, "threads": threads, "options": options}
+        self.process = subprocess.Popen(
+            ["yade", "-n", "-x", "-j", str(threads), str(SCRIPT), json.dumps(asked)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self.said,
+            text=True,
+        )
+        self._answer()
+
+    def _answer(self):
+        for line in self.process.stdout:
+            if line.startswith(MARK):
+                return json.loads(line[len(MARK) :])
+        self.said.seek(0)
+        raise RuntimeError(f"worker ended ({self.name}): {self.said.read().strip()[-600:]}")
+
+    def measure(self, steps):
+        """What the situation measures in `steps` steps."""
+        print(steps, file=self.process.stdin, flush=True)
+        return self._answer()
+
+    def close(self):
+        """End the process."""
+        self.process.stdin.close()
+        try:
+            self.process.wait(timeout=20)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+        self.process.stdout.close()
+        self.said.close()
+
+
+@contextmanager
+def workers(plans):
+    """Start workers, and end them.
+
+    Parameters
+    ----------
+    plans : dict
+        Arguments of Worker as dicts, by name.
+
+    Yields
+    ------
+    dict
+        Worker by name.
+    """
+    with ExitStack() as stack:
+        started = {}
+        for name, plan in plans.items():
+            started[name] = Worker(**plan)
+            stack.callback(started[name].close)
+        yield started
