@@ -32,6 +32,11 @@ def plan(side, threads, path, everything, period):
     }
 
 
+def clock(threads):
+    """Which of a worker's times to compare: on one thread processor time, on several wall time."""
+    return "used" if threads == 1 else "wall"
+
+
 def steps(settings, nodes, path=FUSED):
     """Steps of a turn: a multiple of the longest period."""
     work = settings.work(WORK) * (LAW2_SHARE if path == LAW2 else 1.0)

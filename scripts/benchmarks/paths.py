@@ -2,7 +2,7 @@
 """Path fused beside path law2: the same sheet, the same forces."""
 
 from . import AT_LEAST, FUSED, LAW2
-from .cases import FORCES, PERIODS, label, plan, steps
+from .cases import FORCES, PERIODS, clock, label, plan, steps
 from .sheet import SIDES
 from .turns import ratio_entry, take_turns
 from .workers import workers
@@ -26,7 +26,7 @@ def measure_sheet(side, settings):
             takers = {}
             for case, worker in started.items():
                 many = steps(settings, nodes, case[0])
-                takers[case] = lambda w=worker, s=many: w.measure(s)["seconds"]
+                takers[case] = lambda w=worker, s=many: w.measure(s)[clock(1)]
             times = take_turns(takers, settings.rounds, settings.quiet)
         for case in fused:
             wanted = {"target": LEAST, "bound": AT_LEAST} if side == SIDE else {}

@@ -13,7 +13,7 @@ MEANING = {
     "value": "median over the rounds, in which all that is compared takes turns",
     "spread": "least and largest over the rounds",
     "best": "ratio of the shortest times, which other work on the machine touches least",
-    "time": "processor time on one thread, wall time on two and of the stages of the deployment",
+    "time": "processor time on one thread; wall time in the modules threads and deployment",
     "commit": "of the sources; + if they were changed since",
     "springs": "springs, buckling and damping; in LAMMPS springs alone",
     "all forces": "springs, buckling, damping, creases on every fourth row of sides, air drag",

@@ -2,7 +2,7 @@
 """Time, memory and building of a node on the fused path, from a thousand nodes to a million."""
 
 from . import AT_MOST, FUSED, Entry
-from .cases import PERIODS, label, plan, steps
+from .cases import PERIODS, clock, label, plan, steps
 from .sheet import SIDES
 from .turns import entry, ratio_entry, take_turns
 from .workers import Worker, workers
@@ -40,11 +40,11 @@ def measure(settings):
 
 def times(nodes, given, smallest):
     """Entries of the time of a node, from the answers of a sheet and of the `smallest` one."""
-    each = [1e9 / nodes * answer["seconds"] for answer in given]
+    each = [1e9 / nodes * answer[clock(1)] for answer in given]
     found = [entry(f"sizes: {label(*CASE)}", each, "ns a node and step", nodes)]
     if given is smallest:
         return found
-    small = [1e9 / smallest[0]["nodes"] * answer["seconds"] for answer in smallest]
+    small = [1e9 / smallest[0]["nodes"] * answer[clock(1)] for answer in smallest]
     name = f"{label(*CASE)}, time of a node over that at {smallest[0]['nodes']} nodes"
     wanted = {"target": MOST_GROWTH, "bound": AT_MOST}
     return [*found, ratio_entry(name, each, small, nodes, **wanted)]

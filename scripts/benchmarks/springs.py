@@ -5,7 +5,7 @@ import tempfile
 from pathlib import Path
 
 from . import AT_MOST, lammps
-from .cases import PERIODS, fused_cases, label, plan, steps
+from .cases import PERIODS, clock, fused_cases, label, plan, steps
 from .sheet import SIDES, square_sheet
 from .turns import entry, ratio_entry, take_turns
 from .workers import workers
@@ -30,7 +30,7 @@ def measure_sheet(side, threads, settings):
         lammps.write_data(sheet, folder / "sheet.data")
         takers = {None: lambda: lammps.loop_time(lammps.run(folder, many, threads), threads)}
         for case, worker in started.items():
-            takers[case] = lambda w=worker: w.measure(many)["seconds"]
+            takers[case] = lambda w=worker: w.measure(many)[clock(threads)]
         times = take_turns(takers, settings.rounds, settings.quiet, wait=threads > 1)
 
     bare = times.pop(None)

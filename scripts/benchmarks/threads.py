@@ -27,7 +27,7 @@ def measure_case(side, case, settings):
     many = steps(settings, nodes)
     with workers({threads: plan(side, threads, *case) for threads in (1, 2)}) as started:
         times = take_turns(
-            {n: lambda w=w: w.measure(many)["seconds"] for n, w in started.items()},
+            {n: lambda w=w: w.measure(many)["wall"] for n, w in started.items()},
             settings.rounds,
             settings.quiet,
             wait=True,
