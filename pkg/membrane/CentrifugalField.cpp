@@ -10,9 +10,12 @@ YADE_PLUGIN((CentrifugalField));
 
 void CentrifugalField::action() {
     if (!membrane) throw std::runtime_error("CentrifugalField: membrane is not set");
-    for (const auto& engine : scene->engines) // who moves the nodes may be ahead of their bodies
-        if (auto* forces = dynamic_cast<MembraneForceEngine*>(engine.get()))
-            if (forces->membrane == membrane) forces->writeBack();
+    for (const auto& engine : scene->engines) {
+        auto* forces = dynamic_cast<MembraneForceEngine*>(engine.get());
+        if (!forces || forces->dead || forces->membrane != membrane) continue;
+        if (forces->takesField(*scene)) return;
+        forces->writeBack(); // the nodes may be ahead of their bodies
+    }
     const auto states = membrane->states(*scene);
     for (std::size_t i = 0; i < states.size(); ++i) {
         const Vector3r& x = states[i]->pos;

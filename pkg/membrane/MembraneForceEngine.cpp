@@ -140,8 +140,8 @@ void MembraneForceEngine::stopDiverged() const {
                              ") has a position or velocity that is not finite");
 }
 
-MembraneLedger* MembraneForceEngine::ledger() const {
-    for (const auto& engine : scene->engines)
+MembraneLedger* MembraneForceEngine::ledger(const Scene& in) const {
+    for (const auto& engine : in.engines)
         if (!engine->dead)
             if (auto* found = dynamic_cast<MembraneLedger*>(engine.get()))
                 if (found->forces.get() == this) return found;
@@ -155,7 +155,7 @@ void MembraneForceEngine::continueLedger(const MembraneLedger* of) {
 }
 
 void MembraneForceEngine::computeForces() {
-    const MembraneLedger* const counting = ledger();
+    const MembraneLedger* const counting = ledger(*scene);
     continueLedger(counting);
     if (!counting && !(beta > 0. || zeta > 0. || airDensity > 0.)) return; // all forces were 0 from the start
     ::membrane::SweepStep step;
@@ -183,6 +183,16 @@ void MembraneForceEngine::checkTimeStep() {
         }
     }
     checkedStep_ = scene->dt;
+}
+
+void MembraneForceEngine::advance(long steps) {
+    constexpr long between = 64; // looks for Ctrl-C
+    if (Omega::instance().isRunning()) throw std::runtime_error("advance: the scene is running already");
+    const shared_ptr<Scene> current = Omega::instance().getScene();
+    for (long step = 0; step < steps; ++step) {
+        current->moveToNextTimeStep();
+        if (step % between == 0 && PyErr_CheckSignals() != 0) boost::python::throw_error_already_set();
+    }
 }
 
 Vector3r MembraneForceEngine::totalForce(int node) const {

@@ -43,7 +43,10 @@ public:
     /// The nodes' present velocities were given by hand: until the next step they count as they are.
     virtual void forgetVelocities() { seenPositions.clear(); }
     virtual vector<Vector3r> nodeForces();
+    /// Whether a CentrifugalField need not put its forces on the nodes: this engine counts them in.
+    virtual bool takesField(const Scene&) const { return false; }
 
+    static void advance(long steps);
     Real criticalTimeStep();
     Real creaseEnergy(const ::membrane::Points& x) const;
     Real creaseEnergyNow();
@@ -69,6 +72,8 @@ public:
         ((vector<Vector3r>, seenVelocities, , Attr::readonly, "Velocities [m/s] of the nodes in the last step."))
         ,
         ,
+        .def("advance", &MembraneForceEngine::advance, "Run so many steps of the scene: O.step() without the way through Python in between.")
+        .staticmethod("advance")
         .def("criticalTimeStep", &MembraneForceEngine::criticalTimeStep, "Estimate of the critical time step [s] in the present state, from the actual "
             "stiffnesses, damping, drag, creases and masses; contacts of other functors are not counted.")
         .def("creaseEnergy", &MembraneForceEngine::creaseEnergyNow, "Energy [J] stored in the creases in the present state.")
@@ -77,9 +82,9 @@ public:
         .def("lastPositions", &MembraneForceEngine::lastPositions, "Positions [m] of the nodes as the last step's forces saw them, before the "
             "integrator moved them; empty before the first step.")
         .def("lastPositionsBytes", &MembraneForceEngine::lastPositionsBytes, "The same as bytes, 3 N doubles, for numpy.frombuffer.")
-        .def("creaseForces", &MembraneForceEngine::creaseForces, "Forces of the creases on the nodes in the last step [N].")
-        .def("dampingForces", &MembraneForceEngine::dampingForces, "Forces of damping on the nodes in the last step [N].")
-        .def("dragForces", &MembraneForceEngine::dragForces, "Forces of air drag on the nodes in the last step [N].")
+        .def("creaseForces", &MembraneForceEngine::creaseForces, "Forces of the creases on the nodes in the last step [N]; 0 where a MembraneIntegrator has moved them.")
+        .def("dampingForces", &MembraneForceEngine::dampingForces, "Forces of damping on the nodes in the last step [N]; 0 where a MembraneIntegrator has moved them.")
+        .def("dragForces", &MembraneForceEngine::dragForces, "Forces of air drag on the nodes in the last step [N]; 0 where a MembraneIntegrator has moved them.")
         .def("nodeForces", &MembraneForceEngine::nodeForces, "All forces on the nodes [N] in a step in which nothing was moved, gravity apart.")
         .def("forgetVelocities", &MembraneForceEngine::forgetVelocities, "Call it after giving nodes other velocities: until the next step they count as they are.")
         .def("writeBack", &MembraneForceEngine::writeBack, "Bring the bodies up to date, in the middle of a run with an exchangePeriod above 1.")
@@ -102,7 +107,7 @@ protected:
     /// Builds the tables of the forces for nodes of which `owned` are moved by the sweep.
     void prepareSweep(const vector<char>& owned, int parts);
     /// The ledger that counts this engine's energies in this step, or none.
-    MembraneLedger* ledger() const;
+    MembraneLedger* ledger(const Scene& in) const;
     /// What the sweep needs to begin or continue a ledger's sums.
     void continueLedger(const MembraneLedger* ledger);
     [[noreturn]] void stopDiverged() const;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneIntegrator.hpp"
+#include "CentrifugalField.hpp"
 #include "MembraneLedger.hpp"
 #include "RunEnd.hpp"
 #include "mechanics/LocalDamping.hpp"
@@ -144,12 +145,15 @@ void MembraneIntegrator::checkEngines() const {
     }
 }
 
-void MembraneIntegrator::findIntegrator() {
-    newton_ = nullptr;
+void MembraneIntegrator::findEngines() {
+    newton_.reset();
+    centrifugal_ = 0.;
     for (const auto& engine : scene->engines)
-        if (auto* found = dynamic_cast<NewtonIntegrator*>(engine.get())) {
-            newton_ = found;
-            if (!found->dead) break;
+        if (const auto found = boost::dynamic_pointer_cast<NewtonIntegrator>(engine)) {
+            if (!newton_ || newton_->dead) newton_ = found;
+        } else if (const auto* field = dynamic_cast<const CentrifugalField*>(engine.get())) {
+            if (!field->dead && field->membrane == membrane && takesField(*scene))
+                centrifugal_ = field->omega * field->omega;
         }
     if (movesShared()) return;
     if (newton_->mask <= 0 || (newton_->mask & nodeMask))
@@ -158,7 +162,7 @@ void MembraneIntegrator::findIntegrator() {
 }
 
 void MembraneIntegrator::gather() {
-    findIntegrator();
+    findEngines();
     const bool otherStep = movedStep > 0. && scene->dt != movedStep;
     if (bodiesCurrent_) readBodies();
     readShared();
@@ -225,7 +229,7 @@ void MembraneIntegrator::takeForces() {
 }
 
 void MembraneIntegrator::computeForces() {
-    const MembraneLedger* const counting = ledger();
+    const MembraneLedger* const counting = ledger(*scene);
     continueLedger(counting);
     ::membrane::SweepStep step;
     step.dt = scene->dt;
@@ -233,13 +237,14 @@ void MembraneIntegrator::computeForces() {
         step.gravity = newton_->gravity;
         step.localDamping = newton_->damping;
     }
+    step.centrifugal = centrifugal_;
     step.move = moveNodes;
     step.sums = counting;
     step.apart = counting || !moveNodes;
     moved_ = moveNodes;
     if (!sweep_.step(step)) stopDiverged();
     if (!movesShared())
-        for (const int i : shared_) scene->forces.addForce(membrane->bodyIds[i], sweep_.force(i));
+        for (const int i : shared_) scene->forces.addForce(membrane->bodyIds[i], sweep_.force(i) + fieldForce(i));
     syncs_ = scene->forces.syncCount + (scene->forces.synced ? 0 : 1); // NewtonIntegrator will sum them
     if (!moveNodes) return;
     if (movesShared()) moveShared();
@@ -251,7 +256,16 @@ void MembraneIntegrator::computeForces() {
 Vector3r MembraneIntegrator::totalForce(int node) const {
     if (outsideShared_.size() != shared_.size()) return MembraneForceEngine::totalForce(node);
     const auto place = std::lower_bound(shared_.begin(), shared_.end(), node) - shared_.begin();
-    return sweep_.force(node) + outsideShared_[place];
+    return sweep_.force(node) + outsideShared_[place] + fieldForce(node);
+}
+
+bool MembraneIntegrator::takesField(const Scene& in) const {
+    return !ledger(in); // which counts work from outside, and the field's is such
+}
+
+Vector3r MembraneIntegrator::fieldForce(int node) const {
+    const Vector3r x = sweep_.x.at(node);
+    return states_[node]->mass * centrifugal_ * Vector3r(x[0], x[1], 0.);
 }
 
 /// NewtonIntegrator's step for the shared nodes, rotations apart.
@@ -312,7 +326,7 @@ std::pair<Real, Real> MembraneIntegrator::powerFromOutside() const {
 
 vector<Vector3r> MembraneIntegrator::nodeForces() {
     vector<Vector3r> forces(states_.size());
-    for (const int i : owned_) forces[i] = sweep_.force(i); // with those from outside
+    for (const int i : owned_) forces[i] = sweep_.force(i) + fieldForce(i); // with those from outside
     if (!movesShared()) Omega::instance().getScene()->forces.sync();
     for (const int i : shared_) forces[i] = totalForce(i);
     return forces;

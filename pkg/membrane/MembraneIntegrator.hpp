@@ -20,6 +20,7 @@ public:
     void writeBack() override;
     void forgetVelocities() override { forget_ = true; }
     vector<Vector3r> nodeForces() override;
+    bool takesField(const Scene& in) const override;
 
     // clang-format off
     YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MembraneIntegrator, MembraneForceEngine,
@@ -27,10 +28,12 @@ public:
         ":yref:`MembraneForceEngine` and :yref:`NewtonIntegrator` together, several times faster. The membrane needs no interactions.\n\n"
         "Gravity and local damping are those of the scene's NewtonIntegrator, which may be dead; its mask must not contain `nodeMask`, the mask that bodies of "
         "nodes get here. Nodes that can touch something or are driven (bounded bodies, and those with a blocked translation) are exchanged in every step: "
-        "NewtonIntegrator moves them, unless it is dead; then they move here too. Forces that other engines put on nodes are taken from O.forces. "
+        "NewtonIntegrator moves them, unless it is dead; then they move here too. Forces that other engines put on nodes are taken from O.forces; a "
+        ":yref:`CentrifugalField` is added here. "
         "The other nodes' bodies are brought up to date "
         "every `exchangePeriod` steps, at the end of a run (O.run with a number of steps or O.stopAtTime, O.step) and before a save; where they were changed by hand since, "
-        "the change is taken over at the beginning of the next run. Put it after InteractionLoop and before NewtonIntegrator.",
+        "the change is taken over at the beginning of the next run. After O.pause with an exchangePeriod above 1, call writeBack before looking or changing. "
+        "Put it after InteractionLoop and all engines that add forces, and before NewtonIntegrator.",
         ((int, exchangePeriod, 1, Attr::triggerPostLoad, "Steps between two updates of the bodies of nodes that touch nothing, > 0. Engines and scripts that look at those "
             "bodies in the middle of a run see them up to so many steps old (:yref:`writeBack<MembraneForceEngine.writeBack>` brings them up to date)."))
         ((int, nodeMask, (1 << 29), Attr::readonly, "Mask of the bodies that this engine moves: a bit that no other body has."))
@@ -55,18 +58,20 @@ private:
     const Scene* scene_ = nullptr;                                ///< whose nodes the arrays hold
     bool bodiesCurrent_ = true; ///< the bodies hold what the arrays hold, but for changes by hand
     bool forget_ = false;
-    bool moved_ = false;                 ///< whether the last step did
-    NewtonIntegrator* newton_ = nullptr; ///< of the scene, in this step
-    vector<Vector3r> outsideShared_;     ///< forces [N] from outside on the shared nodes, if they move here
+    bool moved_ = false;                  ///< whether the last step did
+    shared_ptr<NewtonIntegrator> newton_; ///< of the scene, in this step
+    Real centrifugal_ = 0.;               ///< omega² [1/s²] of the scene's CentrifugalField, in this step
+    vector<Vector3r> outsideShared_;      ///< forces [N] from outside on the shared nodes, if they move here
     int sinceExchange_ = 0;
     unsigned long syncs_ = 0; ///< how often the scene's forces had been summed, or will have been, since the last step
 
     bool belongsHere(int node) const;
     int wantedParts() const;
     void checkEngines() const;
-    void findIntegrator();
+    void findEngines();
     bool movesShared() const { return !newton_ || newton_->dead; }
     void moveShared();
+    Vector3r fieldForce(int node) const;
     void tellCollider() const;
     void readBodies();
     void readShared();

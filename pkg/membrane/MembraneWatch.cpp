@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneWatch.hpp"
+#include "mechanics/Drag.hpp"
 #include "mechanics/SideForce.hpp"
 #include <algorithm>
 #include <cmath>
@@ -115,9 +116,13 @@ void MembraneWatch::stop(int part, Real gain) const {
             if (!(energy <= most)) most = energy, where = "crease " + pairText(membrane, c.a, c.b);
         }
     } else if (part == dragPart) {
-        const vector<Vector3r> drag = forces.dragForces();
+        vector<Real> weights(x.size(), 0.);
+        for (const Vector3i& t : membrane.triangles) {
+            const Vector3r area = (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
+            for (int k = 0; k < 3; ++k) weights[t[k]] += ::membrane::dragWeight(area, v[t[k]]);
+        }
         for (std::size_t i = 0; i < x.size(); ++i) {
-            const Real power = drag[i].norm() * v[i].norm();
+            const Real power = -::membrane::nodeDrag(forces.airDensity, weights[i], v[i]).dot(v[i]);
             if (!(power <= most)) most = power, where = "node " + std::to_string(i);
         }
     } else {

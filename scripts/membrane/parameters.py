@@ -105,7 +105,7 @@ class SailParameters:
         choices=("law2", "fused"),
     )
     exchange_period: int = _parameter(
-        1, "-", RUN, "path fused: steps between two updates of YADE's bodies", least=1
+        100, "-", RUN, "path fused: steps between two updates of YADE's bodies", least=1
     )
     force_time_step: bool = _parameter(False, "-", RUN, "run even above the critical time step")
 

@@ -71,7 +71,8 @@ class Recorder:
         shapes = Path(folder) / "shapes"
         self._film = VtkSeries(shapes, "film", mesh.triangles)
         self._lines = VtkSeries(shapes, "sides", self._sides)
-        self._azimuths = []
+        # Of the tips against the spool [rad]: at the first row, where its time is 0, and since.
+        self._first_lead, self._phases = None, np.zeros(4)
 
     def _rows_of_creases(self, creases):
         """Row in the membrane's sides of each crease (C,)."""
@@ -81,9 +82,10 @@ class Recorder:
     def history(self, time):
         """Append the measures of the last step, whose forces acted `time` [s] after the release."""
         x = self.sail.last_positions()
-        self._azimuths.append(measures.tip_azimuths(self.mesh, x))
-        turned = self.spin_rate * np.array([row["time"] for row in self.rows] + [time])
-        phases = measures.phase_difference(np.array(self._azimuths), turned)[-1]
+        lead = measures.tip_azimuths(self.mesh, x) - self.spin_rate * time
+        if self._first_lead is None:
+            self._first_lead = lead
+        self._phases = phases = measures.nearest_turn(lead - self._first_lead, self._phases)
         length = np.linalg.norm(x[self._sides[:, 1]] - x[self._sides[:, 0]], axis=1)
         ledger = self.sail.ledger
         row = {

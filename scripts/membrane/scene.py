@@ -291,11 +291,10 @@ def set_engines(
 def advance(steps):
     """Run `steps` steps. Raises what an engine raised."""
     scene = yade.Omega()
-    step = scene.step  # O.run() would lose what an engine raises before O.wait() is called
     scene.stopAtIter = scene.iter + steps  # lets a MembraneIntegrator know when the run ends
     try:
-        for _ in range(steps):
-            step()
+        # O.run() would lose what an engine raises before O.wait() is called.
+        _plugin["MembraneForceEngine"].advance(steps)
     except BaseException:
         for engine in scene.engines:
             if isinstance(engine, _plugin["MembraneForceEngine"]):

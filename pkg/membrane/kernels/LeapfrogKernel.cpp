@@ -20,6 +20,7 @@ inline void moveBlock(int begin, int end, const Motion& m, Contributions& added)
     const double* const mass = m.mass;
     const double dt = m.dt, density = m.airDensity, share = m.localDamping;
     const Eigen::Vector3d gravity = m.gravity;
+    const double centrifugal = m.centrifugal;
 #pragma GCC ivdep
     for (int i = begin; i < end; ++i) {
         const Eigen::Vector3d place = x.at(i), before = v.at(i);
@@ -31,6 +32,8 @@ inline void moveBlock(int begin, int end, const Motion& m, Contributions& added)
         }
         if (sums) force += damping.at(i) + crease.at(i);
         Eigen::Vector3d acceleration = (1. / mass[i]) * force + gravity;
+        acceleration[0] += centrifugal * place[0];
+        acceleration[1] += centrifugal * place[1];
         if (local)
             for (int k = 0; k < 3; ++k) acceleration[k] = locallyDamped(acceleration[k], before[k], dt, share);
         const Eigen::Vector3d after = before + dt * acceleration;

@@ -19,6 +19,7 @@ struct Motion {
     double airDensity = 0.;       ///< [kg/m³]
     double localDamping = 0.;     ///< YADE's damping of NewtonIntegrator [-]
     Eigen::Vector3d gravity = Eigen::Vector3d::Zero(); ///< [m/s²]
+    double centrifugal = 0.; ///< omega² [1/s²] of a frame that turns about z; not counted in the sums
 };
 
 /// Sums over nodes for the energy ledger.

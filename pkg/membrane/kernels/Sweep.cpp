@@ -178,6 +178,7 @@ void Sweep::sweepPart(int part, const SweepStep& now) {
     motion.airDensity = laws_.airDensity;
     motion.localDamping = now.localDamping;
     motion.gravity = now.gravity;
+    motion.centrifugal = now.centrifugal;
 
     Prefetch prefetch;
     if (partition_.partCount() > 1) addBorders(part, now.apart);

@@ -19,6 +19,7 @@ struct SweepStep {
     double dt = 0.;                                    ///< [s]
     Eigen::Vector3d gravity = Eigen::Vector3d::Zero(); ///< [m/s²]
     double localDamping = 0.;                          ///< YADE's damping of NewtonIntegrator [-]
+    double centrifugal = 0.;                           ///< see Motion
     bool move = true;                                  ///< false: forces only
     bool elastic = true;                               ///< false: without the sides' springs
     bool apart = false; ///< keep the forces of damping and creases apart from those of the springs; needed for `sums`

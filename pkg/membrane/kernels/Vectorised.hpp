@@ -20,7 +20,7 @@ extern "C" __attribute__((simd("notinbranch"))) double atan2(double, double) noe
 namespace membrane {
 
 /// Loops over a block's elements run on to a multiple of this, so that none is left over to be computed singly.
-constexpr int lanes = 8;
+constexpr int lanes = 4;
 
 inline int wholeLanes(int count) {
     return (count + lanes - 1) / lanes * lanes;
