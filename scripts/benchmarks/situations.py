@@ -38,7 +38,7 @@ def resident():
 
 
 def clocks():
-    """Wall time and processor time [s], (2,); on one thread other work lengthens the latter less."""
+    """Wall and processor time [s], (2,); on one thread other work lengthens the latter less."""
     return np.array([time.perf_counter(), time.process_time()])
 
 
