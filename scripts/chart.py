@@ -33,8 +33,8 @@ TURNS = 1.5  # of the disks
 HEADER = """\
 # Accuracy against time. Made by `scripts/run.sh chart`, on one thread.
 # question: "deployment": rms error of the deployment rate [-] over the first 0.1 s, against
-#   refine = 4, dt = 1.25e-6 s; "ledger": largest energy imbalance over kinetic energy [-] in the same
-#   runs; "disk": largest relative error of the frequencies of modes (2,0), (0,1), (3,0)
+#   refine = 4, dt = 1.25e-6 s; "ledger": largest energy imbalance over kinetic energy [-] in
+#   the same runs; "disk": largest relative error of the frequencies of modes (2,0), (0,1), (3,0)
 # part: what was left out; mesh: refine of the sail, cells of the disk; dt_s: time step [s]
 # us_per_step: processor time of a step [us]; cost_s: that of the paper's 1 s of deployment, or of
 #   one turn of the disk [s]; pareto: 1 if nothing is both cheaper and more accurate
