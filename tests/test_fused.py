@@ -4,6 +4,7 @@
 Both sum the same forces in another order: what they give differs by rounding, which grows.
 """
 
+import time
 import unittest
 
 import __main__
@@ -248,6 +249,7 @@ class TestExchange(FusedTest):
         while O.iter < 200:
             pass
         O.pause()
+        time.sleep(0.2)  # O.pause() does not wait for the step that is under way
         made.forces.writeBack()
         steps = O.iter
         self.assertNotEqual(steps % 1000, 0)
