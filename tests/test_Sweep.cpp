@@ -165,7 +165,7 @@ struct Plain {
             const Vector3d parts[] = {crease[i], damping[i], drag[i]};
             for (int k = 0; k < 3; ++k) {
                 sums.arriving[k] += parts[k].dot(before);
-                sums.leaving[k] += parts[k].dot(after);
+                sums.power[k] += parts[k].dot(mean);
             }
             v[i] = after;
             u[i] = 1.5 * after - 0.5 * before;
@@ -191,7 +191,7 @@ double relative(double found, double expected) {
     return std::abs(found - expected) / std::max(std::abs(expected), 1e-300);
 }
 
-SweepStep still(bool apart = false, bool sums = false) {
+SweepStep still(bool apart = false, Sums sums = Sums::none) {
     SweepStep now;
     now.dt = dt;
     now.move = false;
@@ -200,8 +200,10 @@ SweepStep still(bool apart = false, bool sums = false) {
     return now;
 }
 
-SweepStep moving(bool sums = false) {
-    SweepStep now = still(sums, sums);
+constexpr Sums allSums[] = {Sums::none, Sums::works, Sums::energies};
+
+SweepStep moving(Sums sums = Sums::none) {
+    SweepStep now = still(sums != Sums::none, sums);
     now.move = true;
     return now;
 }
@@ -299,7 +301,7 @@ TEST(Sweep, EnergiesKinksAndSumsAreThoseOfPlainLoops) {
                     plain.lengths.push_back(((m.x[s.b] - dt * m.v[s.b]) - (m.x[s.a] - dt * m.v[s.a])).norm());
                 Sweep sweep = m.sweep(parts, chunkSize);
                 EXPECT_TRUE(sweep.lengths().empty());
-                SweepStep now = moving(true);
+                SweepStep now = moving(Sums::energies);
                 now.gravity = Vector3d(3., -2., 9.81);
                 for (int step = 0; step < 3; ++step) {
                     plain.computeForces();
@@ -315,7 +317,7 @@ TEST(Sweep, EnergiesKinksAndSumsAreThoseOfPlainLoops) {
                     EXPECT_LT(relative(sums.torque, plain.sums.torque), 1e-9);
                     for (int k = 0; k < 3; ++k) {
                         EXPECT_LT(relative(sums.arriving[k], plain.sums.arriving[k]), 1e-10) << k;
-                        EXPECT_LT(relative(sums.leaving[k], plain.sums.leaving[k]), 1e-10) << k;
+                        EXPECT_LT(relative(sums.power[k], plain.sums.power[k]), 1e-10) << k;
                     }
                     const std::vector<double> lengths = sweep.lengths();
                     ASSERT_EQ(lengths.size(), plain.lengths.size());
@@ -337,7 +339,7 @@ TEST(Sweep, GivenLengthsAreThoseFromWhichKinksAreCounted) {
         const std::vector<double> kept = sweep.lengths();
         EXPECT_EQ(kept, plain.lengths);
         plain.computeForces();
-        sweep.step(still(true, true));
+        sweep.step(still(true, Sums::energies));
         EXPECT_LT(relative(sweep.sideEnergies().kink, plain.energy.kink), 1e-11);
         sweep.step(still()); // no sums: the lengths are no longer those of the step before
         EXPECT_FALSE(sweep.hasLengths());
@@ -347,7 +349,7 @@ TEST(Sweep, GivenLengthsAreThoseFromWhichKinksAreCounted) {
 
 TEST(Sweep, StepsAreThoseOfAPlainLeapfrog) {
     for (const Model& m : models()) {
-        for (bool sums : {false, true})
+        for (Sums sums : allSums)
             for (double localDamping : {0., 0.4}) {
                 Plain plain(m);
                 SweepStep now = moving(sums);
@@ -374,7 +376,7 @@ TEST(Sweep, StepsAreThoseOfAPlainLeapfrog) {
 
 TEST(Sweep, NodesOfOthersStayWithTheRightForceOnThem) {
     for (bool mixed : {false, true})
-        for (bool sums : {false, true}) {
+        for (Sums sums : allSums) {
             const Model m = Model(13, 11, 0.01, mixed).withAll().withForeign();
             for (int parts : partCounts)
                 for (int chunkSize : chunkSizes) {
@@ -389,7 +391,7 @@ TEST(Sweep, NodesOfOthersStayWithTheRightForceOnThem) {
                             EXPECT_EQ(sweep.x.at(i), m.x[i]);
                             EXPECT_EQ(sweep.v.at(i), m.v[i]);
                             EXPECT_LT((sweep.force(i) - plain.force(i)).norm(), 1e-11 * size);
-                            if (!sums) continue;
+                            if (sums == Sums::none) continue;
                             EXPECT_LT((sweep.elasticForce(i) - plain.elastic[i]).norm(), 1e-11 * size);
                         }
                         plain.move(moving(sums));
@@ -398,12 +400,33 @@ TEST(Sweep, NodesOfOthersStayWithTheRightForceOnThem) {
         }
 }
 
+TEST(Sweep, WorksAreTheSameBitsWithAndWithoutEnergies) {
+    for (bool mixed : {false, true})
+        for (int parts : partCounts) {
+            const Model m = Model(13, 11, 0.01, mixed).withAll().withForeign();
+            Sweep works = m.sweep(parts, 64), energies = m.sweep(parts, 64);
+            for (int step = 0; step < 4; ++step) {
+                ASSERT_TRUE(works.step(moving(Sums::works)));
+                ASSERT_TRUE(energies.step(moving(Sums::energies)));
+                EXPECT_TRUE(sameBits(works, energies));
+                const MotionSums &one = works.motionSums(), &other = energies.motionSums();
+                for (int k = 0; k < 3; ++k) {
+                    EXPECT_NE(one.power[k], 0.);
+                    EXPECT_EQ(one.power[k], other.power[k]);
+                }
+                EXPECT_EQ(one.torque, other.torque);
+                EXPECT_NE(works.sideEnergies().kink, 0.);
+                EXPECT_EQ(works.sideEnergies().kink, energies.sideEnergies().kink);
+            }
+        }
+}
+
 TEST(Sweep, SamePartsGiveTheSameBitsAndOthersNearlyTheSame) {
     for (bool mixed : {false, true}) {
         const Model m = Model(30, 25, 0.01, mixed).withAll();
         const auto run = [&m](int parts) {
             Sweep sweep = m.sweep(parts, 64);
-            for (int step = 0; step < 10; ++step) sweep.step(moving(step % 2));
+            for (int step = 0; step < 10; ++step) sweep.step(moving(allSums[step % 3]));
             return sweep;
         };
         const Sweep alone = run(1);
@@ -429,7 +452,7 @@ TEST(Sweep, LargeSheetInManyChunks) {
     }
     for (int parts : {1, 2, 5}) {
         Sweep sweep = m.sweep(parts);
-        for (int step = 0; step < 3; ++step) ASSERT_TRUE(sweep.step(moving(step == 1)));
+        for (int step = 0; step < 3; ++step) ASSERT_TRUE(sweep.step(moving(step == 1 ? Sums::energies : Sums::none)));
         EXPECT_LT(difference(plain.x, [&](int i) { return sweep.x.at(i); }), 1e-13);
         EXPECT_LT(difference(plain.v, [&](int i) { return sweep.v.at(i); }), 1e-12);
     }
@@ -448,13 +471,13 @@ TEST(Sweep, MorePartsThanNodes) {
 }
 
 TEST(Sweep, StepWithoutMotionMovesNothingAndIsNotCountedInTheNext) {
-    for (bool sums : {false, true}) {
+    for (Sums sums : allSums) {
         const Model m = Model(13, 11, 0.01, false).withAll().withForeign();
         for (int parts : partCounts) {
             Sweep straight = m.sweep(parts, 64), interrupted = m.sweep(parts, 64);
             for (int step = 0; step < 4; ++step) {
                 const Sweep before = interrupted;
-                for (int times = 0; times < 2; ++times) ASSERT_TRUE(interrupted.step(still(sums, sums)));
+                for (int times = 0; times < 2; ++times) ASSERT_TRUE(interrupted.step(still(sums != Sums::none, sums)));
                 EXPECT_TRUE(sameBits(before, interrupted));
                 ASSERT_TRUE(straight.step(moving(sums)));
                 ASSERT_TRUE(interrupted.step(moving(sums)));
@@ -498,7 +521,7 @@ TEST(Sweep, ForcesFromOutsideActOnceAStepUntilTheyAreTakenAway) {
 TEST(Sweep, PreparedAnewItKeepsItsStateAndTakesTheNewLaws) {
     Model m = Model(13, 11, 0.01, false).withAll();
     Sweep sweep = m.sweep(2, 64);
-    for (int step = 0; step < 3; ++step) sweep.step(moving(true));
+    for (int step = 0; step < 3; ++step) sweep.step(moving(Sums::energies));
     const Points x = sweep.x.points(), v = sweep.v.points(), u = sweep.u.points();
     m.laws = Laws();
     m.withDamping(0.2);
@@ -585,13 +608,13 @@ TEST(Sweep, CoincidingNodesAndCollapsedElementsGiveFiniteNumbers) {
             Plain plain(m);
             plain.x = sweep.x.points();
             plain.computeForces();
-            ASSERT_TRUE(sweep.step(still(true, true)));
+            ASSERT_TRUE(sweep.step(still(true, Sums::energies)));
             for (std::size_t i = 0; i < m.x.size(); ++i) EXPECT_TRUE(sweep.force(i).allFinite()) << i;
             EXPECT_LT(difference(plain.elastic, [&](int i) { return sweep.elasticForce(i); }), 1e-12);
             EXPECT_LT(difference(plain.crease, [&](int i) { return sweep.creaseForce(i); }), 1e-7);
             EXPECT_TRUE(std::isfinite(sweep.sideEnergies().elastic));
             EXPECT_TRUE(std::isfinite(sweep.sideEnergies().kink));
-            for (int step = 0; step < 3; ++step) EXPECT_TRUE(sweep.step(moving(true)));
+            for (int step = 0; step < 3; ++step) EXPECT_TRUE(sweep.step(moving(Sums::energies)));
             EXPECT_TRUE(std::isfinite(sweep.motionSums().kinetic));
         }
     }
@@ -599,7 +622,7 @@ TEST(Sweep, CoincidingNodesAndCollapsedElementsGiveFiniteNumbers) {
 
 TEST(Sweep, NumbersThatAreNotFiniteAreReported) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
-    for (bool sums : {false, true})
+    for (Sums sums : allSums)
         for (double bad : {nan, inf, -inf})
             for (int parts : partCounts)
                 for (int node : {0, 77, 167}) {

@@ -11,6 +11,7 @@
 #include <lib/high-precision/Constants.hpp>
 #include <numeric>
 #include <sstream>
+#include <typeinfo>
 
 namespace yade {
 
@@ -140,29 +141,48 @@ void MembraneForceEngine::stopDiverged() const {
                              ") has a position or velocity that is not finite");
 }
 
-MembraneLedger* MembraneForceEngine::ledger(const Scene& in) const {
+void MembraneForceEngine::findEngines(const Scene& in) const {
+    ledgers_.clear();
     for (const auto& engine : in.engines)
-        if (!engine->dead)
-            if (auto* found = dynamic_cast<MembraneLedger*>(engine.get()))
-                if (found->forces.get() == this) return found;
+        if (auto* found = dynamic_cast<MembraneLedger*>(engine.get())) ledgers_.push_back(found);
+}
+
+void MembraneForceEngine::findEnginesIfOthers(const Scene& in) const {
+    // By type, too: another engine may lie where one lay before.
+    const auto known = [](const auto& one, const shared_ptr<Engine>& engine) {
+        return one.first == engine.get() && one.second == &typeid(*engine);
+    };
+    if (std::equal(knownEngines_.begin(), knownEngines_.end(), in.engines.begin(), in.engines.end(), known)) return;
+    findEngines(in);
+    knownEngines_.clear();
+    for (const auto& engine : in.engines) knownEngines_.emplace_back(engine.get(), &typeid(*engine));
+}
+
+MembraneLedger* MembraneForceEngine::ledger(const Scene& in) const {
+    findEnginesIfOthers(in);
+    for (MembraneLedger* const found : ledgers_)
+        if (!found->dead && found->forces.get() == this) return found;
     return nullptr;
 }
 
-void MembraneForceEngine::continueLedger(const MembraneLedger* of) {
+void MembraneForceEngine::continueLedger(const MembraneLedger* of, ::membrane::Sums wanted) {
     if (of && of->started && !keepLengths_ && of->lastLengths.size() == membrane->rest().sides.size())
         sweep_.setLengths(of->lastLengths);
-    keepLengths_ = madeSums_ = of != nullptr;
+    keepLengths_ = of != nullptr;
+    madeSums_ = wanted;
 }
 
 void MembraneForceEngine::computeForces() {
     const MembraneLedger* const counting = ledger(*scene);
-    continueLedger(counting);
+    const ::membrane::Sums sums = counting ? ::membrane::Sums::energies : ::membrane::Sums::none;
+    continueLedger(counting, sums);
     if (!counting && !(beta > 0. || zeta > 0. || airDensity > 0.)) return; // all forces were 0 from the start
     ::membrane::SweepStep step;
     step.dt = scene->dt;
     step.move = false;
     step.apart = true;
-    step.elastic = step.sums = counting;
+    step.elastic = counting;
+    step.sums = sums;
     sweep_.step(step);
     for (const int i : allNodes_)
         scene->forces.addForce(membrane->bodyIds[i],

@@ -34,8 +34,8 @@ public:
     virtual Vector3r totalForce(int node) const;
     /// Power [W] of the forces from outside on those others, at the velocities before and after the last step.
     virtual std::pair<Real, Real> powerFromOutside() const { return {0., 0.}; }
-    /// Whether the last step made the sums for the ledger.
-    bool madeSums() const { return madeSums_; }
+    /// The sums that the last step made for the ledger.
+    ::membrane::Sums madeSums() const { return madeSums_; }
     void forgetLengths() { keepLengths_ = false; }
 
     /// Brings the bodies up to date, if this engine moves them itself.
@@ -96,7 +96,7 @@ protected:
     vector<int> allNodes_;
     ::membrane::Sweep sweep_;
     long lastStep_ = -1;
-    bool madeSums_ = false;
+    ::membrane::Sums madeSums_ = ::membrane::Sums::none;
 
     /// Looks up the bodies and computes what stays the same while it runs.
     virtual void prepare(Scene& now);
@@ -108,12 +108,17 @@ protected:
     void prepareSweep(const vector<char>& owned, int parts);
     /// The ledger that counts this engine's energies in this step, or none.
     MembraneLedger* ledger(const Scene& in) const;
+    /// Called when O.engines are others than before: looking through them in every step takes longer than many a force.
+    virtual void findEngines(const Scene& in) const;
+    void findEnginesIfOthers(const Scene& in) const;
     /// What the sweep needs to begin or continue a ledger's sums.
-    void continueLedger(const MembraneLedger* ledger);
+    void continueLedger(const MembraneLedger* ledger, ::membrane::Sums wanted);
     [[noreturn]] void stopDiverged() const;
 
 private:
     const Scene* preparedFor_ = nullptr;
+    mutable vector<std::pair<const Engine*, const std::type_info*>> knownEngines_;
+    mutable vector<MembraneLedger*> ledgers_; ///< of this engine, in the order of O.engines
     Real checkedStep_ = -1.;
     bool keepLengths_ = false; ///< the sweep's lengths are those of the ledger's last step
 

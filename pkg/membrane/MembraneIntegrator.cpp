@@ -145,16 +145,29 @@ void MembraneIntegrator::checkEngines() const {
     }
 }
 
-void MembraneIntegrator::findEngines() {
-    newton_.reset();
+void MembraneIntegrator::findEngines(const Scene& in) const {
+    MembraneForceEngine::findEngines(in);
+    newtons_.clear();
+    fields_.clear();
+    for (const auto& engine : in.engines)
+        if (const auto newton = boost::dynamic_pointer_cast<NewtonIntegrator>(engine))
+            newtons_.push_back(newton);
+        else if (auto* const field = dynamic_cast<CentrifugalField*>(engine.get()))
+            fields_.push_back(field);
+}
+
+/// The integrator and the field that count in this step: the first that is alive, if any.
+void MembraneIntegrator::chooseEngines() {
+    findEnginesIfOthers(*scene);
+    const auto alive = std::find_if(newtons_.begin(), newtons_.end(), [](const auto& found) { return !found->dead; });
+    if (newtons_.empty())
+        newton_.reset();
+    else if (const auto& chosen = alive == newtons_.end() ? newtons_.back() : *alive; newton_ != chosen)
+        newton_ = chosen;
     centrifugal_ = 0.;
-    for (const auto& engine : scene->engines)
-        if (const auto found = boost::dynamic_pointer_cast<NewtonIntegrator>(engine)) {
-            if (!newton_ || newton_->dead) newton_ = found;
-        } else if (const auto* field = dynamic_cast<const CentrifugalField*>(engine.get())) {
-            if (!field->dead && field->membrane == membrane && takesField(*scene))
-                centrifugal_ = field->omega * field->omega;
-        }
+    for (const CentrifugalField* const field : fields_)
+        if (!field->dead && field->membrane == membrane && takesField(*scene))
+            centrifugal_ = field->omega * field->omega;
     if (movesShared()) return;
     if (newton_->mask <= 0 || (newton_->mask & nodeMask))
         throw std::runtime_error("MembraneIntegrator: NewtonIntegrator would move its nodes once more; give it mask=" +
@@ -162,7 +175,7 @@ void MembraneIntegrator::findEngines() {
 }
 
 void MembraneIntegrator::gather() {
-    findEngines();
+    chooseEngines();
     const bool otherStep = movedStep > 0. && scene->dt != movedStep;
     if (bodiesCurrent_) readBodies();
     readShared();
@@ -230,7 +243,9 @@ void MembraneIntegrator::takeForces() {
 
 void MembraneIntegrator::computeForces() {
     const MembraneLedger* const counting = ledger(*scene);
-    continueLedger(counting);
+    ::membrane::Sums sums = ::membrane::Sums::none;
+    if (counting) sums = counting->wantsEnergies(*scene) ? ::membrane::Sums::energies : ::membrane::Sums::works;
+    continueLedger(counting, sums);
     ::membrane::SweepStep step;
     step.dt = scene->dt;
     if (newton_) {
@@ -239,7 +254,7 @@ void MembraneIntegrator::computeForces() {
     }
     step.centrifugal = centrifugal_;
     step.move = moveNodes;
-    step.sums = counting;
+    step.sums = sums;
     step.apart = counting || !moveNodes;
     moved_ = moveNodes;
     if (!sweep_.step(step)) stopDiverged();

@@ -5,6 +5,8 @@
 
 namespace yade {
 
+class CentrifugalField;
+
 class MembraneIntegrator : public MembraneForceEngine {
 public:
     ~MembraneIntegrator() override {}
@@ -50,6 +52,7 @@ protected:
     void arrange() override;
     void gather() override;
     void computeForces() override;
+    void findEngines(const Scene& in) const override;
 
 private:
     vector<shared_ptr<Body>> bodies_;
@@ -58,7 +61,9 @@ private:
     const Scene* scene_ = nullptr;                                ///< whose nodes the arrays hold
     bool bodiesCurrent_ = true; ///< the bodies hold what the arrays hold, but for changes by hand
     bool forget_ = false;
-    bool moved_ = false;                  ///< whether the last step did
+    bool moved_ = false;                                   ///< whether the last step did
+    mutable vector<shared_ptr<NewtonIntegrator>> newtons_; ///< in O.engines
+    mutable vector<CentrifugalField*> fields_;
     shared_ptr<NewtonIntegrator> newton_; ///< of the scene, in this step
     Real centrifugal_ = 0.;               ///< omega² [1/s²] of the scene's CentrifugalField, in this step
     vector<Vector3r> outsideShared_;      ///< forces [N] from outside on the shared nodes, if they move here
@@ -68,7 +73,7 @@ private:
     bool belongsHere(int node) const;
     int wantedParts() const;
     void checkEngines() const;
-    void findEngines();
+    void chooseEngines();
     bool movesShared() const { return !newton_ || newton_->dead; }
     void moveShared();
     Vector3r fieldForce(int node) const;

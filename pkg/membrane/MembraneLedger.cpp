@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneLedger.hpp"
+#include "RunEnd.hpp"
+#include <array>
 #include <cmath>
 #include <core/Scene.hpp>
 
@@ -8,6 +10,10 @@ namespace yade {
 YADE_PLUGIN((MembraneLedger));
 
 namespace {
+
+/// Works of creases, damping and drag in a single step, over the energies of the membrane, that make all energies
+/// wanted in the next one: a run that goes wrong may do so within a few steps.
+constexpr Real restlessShare = 1e-3;
 
 /// A vector turned about -z by `angle` [rad]: the chord of a driven node's step before, from that of this step.
 Vector3r turnedBack(const Vector3r& v, Real angle) {
@@ -26,23 +32,20 @@ Vector3r freeDirections(const State& state) {
 void MembraneLedger::action() {
     if (!forces || !forces->membrane) throw std::runtime_error("MembraneLedger: forces is not set, or has no membrane");
     const Membrane& membrane = *forces->membrane;
-    if (forces->lastStep() != scene->iter || !forces->madeSums())
+    if (forces->lastStep() != scene->iter || forces->madeSums() == ::membrane::Sums::none)
         throw std::runtime_error("MembraneLedger: its MembraneForceEngine must run in the same step, before it");
     const ::membrane::Sweep& sweep = forces->sweep();
     if (started && !lastLengths.empty() && lastLengths.size() != membrane.rest().sides.size())
         throw std::runtime_error("MembraneLedger: forces has another membrane now");
-    elastic = sweep.sideEnergies().elastic;
-    if (started) kinkError += sweep.sideEnergies().kink;
+    const bool all = forces->madeSums() == ::membrane::Sums::energies;
 
-    // Work from the step before to this one: mean of both forces times the velocity between them.
+    // Of crease, damping, drag, driven nodes, others: power at the velocities before this step, and at their mean.
     const ::membrane::MotionSums& moved = sweep.motionSums();
     const auto [arrivingOutside, leavingOutside] = forces->powerFromOutside();
-    kinetic = moved.kinetic;
-    potential = moved.potential;
-    angularMomentum = moved.angularMomentum;
-    Real torque = moved.torque;
-    vector<Real> arriving{moved.arriving[0], moved.arriving[1], moved.arriving[2], 0., arrivingOutside};
-    vector<Real> leaving{moved.leaving[0], moved.leaving[1], moved.leaving[2], 0., leavingOutside};
+    std::array<Real, 6> arriving{moved.arriving[0], moved.arriving[1], moved.arriving[2], 0., arrivingOutside, 0.};
+    std::array<Real, 6> mean{
+        moved.power[0], moved.power[1], moved.power[2], 0., 0.5 * (arrivingOutside + leavingOutside), moved.torque};
+    Real kineticNow = moved.kinetic, potentialNow = moved.potential, momentumNow = moved.angularMomentum;
     const auto& states = forces->states();
     for (const int i : forces->nodesLeft()) {
         const State& state = *states[i];
@@ -54,37 +57,73 @@ void MembraneLedger::action() {
         const Vector3r after = state.vel;
         const Vector3r before =
             free.isZero() ? turnedBack(after, state.angVel[2] * scene->dt) : forces->velocitySeen(i);
-        const auto addPowers = [&](vector<Real>& powers, const Vector3r& v) {
+        const auto addPowers = [&](std::array<Real, 6>& powers, const Vector3r& v) {
             powers[0] += fCrease.dot(v);
             powers[1] += fDamping.dot(v);
             powers[2] += fDrag.dot(v);
             powers[3] -= internal.cwiseProduct(held).dot(v); // what holds a node bears the membrane's forces on it
             powers[4] += other.cwiseProduct(free).dot(v);
         };
-        addPowers(arriving, before);
-        addPowers(leaving, after);
-        kinetic += 0.5 * state.mass * before.cwiseProduct(free).dot(after);
-        potential -= state.mass * gravity.cwiseProduct(free).dot(x);
-        const Vector3r momentum = state.mass * 0.5 * (before + after).cwiseProduct(free);
-        angularMomentum += x[0] * momentum[1] - x[1] * momentum[0];
+        const Vector3r between = 0.5 * (before + after);
+        addPowers(mean, between);
+        if (all) addPowers(arriving, before);
+        kineticNow += 0.5 * state.mass * before.cwiseProduct(free).dot(after);
+        potentialNow -= state.mass * gravity.cwiseProduct(free).dot(x);
+        const Vector3r momentum = state.mass * between.cwiseProduct(free);
+        momentumNow += x[0] * momentum[1] - x[1] * momentum[0];
         // The integrator keeps gravity out of the scene's forces.
         const Vector3r pull = (total + state.mass * gravity).cwiseProduct(free);
-        torque += x[0] * pull[1] - x[1] * pull[0];
+        mean[5] += x[0] * pull[1] - x[1] * pull[0];
     }
-    time = scene->time;
+    arriving[5] = mean[5]; // the impulse's torque is that of this step all along
 
-    if (!started) {
-        initial = total();
-        initialCrease = crease();
-        initialAngularMomentum = angularMomentum;
-        started = true;
+    // Work from the step before to this one is the mean of both forces times the velocity between them: half a step
+    // with this step's forces before it, and half a step after it.
+    if (started) {
+        doneKinks += sweep.sideEnergies().kink;
+        if (all) {
+            Real* const entries[] = {&creaseWork, &dampingWork, &dragWork, &drivenWork, &contactWork, &angularImpulse};
+            for (std::size_t i = 0; i < arriving.size(); ++i)
+                *entries[i] = doneWorks[i] + 0.5 * countedStep * arriving[i];
+        }
+        // Both halves at once, in which arriving power need not be known, unless the step has changed.
+        for (std::size_t i = 0; i < mean.size(); ++i)
+            doneWorks[i] += countedStep == scene->dt
+                                ? scene->dt * mean[i]
+                                : 0.5 * countedStep * arriving[i] + 0.5 * scene->dt * (2. * mean[i] - arriving[i]);
     } else {
-        Real* const works[] = {&creaseWork, &dampingWork, &dragWork, &drivenWork, &contactWork};
-        for (std::size_t i = 0; i < arriving.size(); ++i) *works[i] += 0.5 * scene->dt * (lastPowers[i] + arriving[i]);
-        angularImpulse += 0.5 * scene->dt * (lastTorque + torque);
+        doneWorks.assign(mean.size(), 0.);
+        for (std::size_t i = 0; i < mean.size(); ++i) doneWorks[i] = 0.5 * scene->dt * (2. * mean[i] - arriving[i]);
     }
-    lastPowers = leaving;
-    lastTorque = torque;
+    countedStep = scene->dt;
+    restless_ = !(scene->dt * (std::abs(mean[0]) + std::abs(mean[1]) + std::abs(mean[2])) <=
+                  restlessShare * (std::abs(kinetic) + elastic));
+    if (!all) return;
+
+    upToDate_ = scene->iter;
+    time = scene->time;
+    elastic = sweep.sideEnergies().elastic;
+    kinkError = doneKinks;
+    kinetic = kineticNow;
+    potential = potentialNow;
+    angularMomentum = momentumNow;
+    if (started) return;
+    initial = total();
+    initialCrease = crease();
+    initialAngularMomentum = angularMomentum;
+    started = true;
+}
+
+void MembraneLedger::postLoad(MembraneLedger&) {
+    if (period <= 0) throw std::invalid_argument("MembraneLedger: period = " + std::to_string(period) + " must be > 0");
+}
+
+bool MembraneLedger::wantsEnergies(const Scene& now) const {
+    return !started || now.iter % period == 0 || now.dt != countedStep || restless_ || endsRun(now);
+}
+
+bool MembraneLedger::isUpToDate(const Scene& now) const {
+    return upToDate_ == now.iter;
 }
 
 Real MembraneLedger::crease() const {
@@ -92,7 +131,7 @@ Real MembraneLedger::crease() const {
 }
 
 void MembraneLedger::preSave(MembraneLedger&) {
-    if (started && forces && forces->madeSums()) lastLengths = forces->sweep().lengths();
+    if (started && forces && forces->madeSums() != ::membrane::Sums::none) lastLengths = forces->sweep().lengths();
 }
 
 Real MembraneLedger::balance() const {

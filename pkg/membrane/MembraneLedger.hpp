@@ -8,6 +8,11 @@ namespace yade {
 class MembraneLedger : public GlobalEngine {
 public:
     void action() override;
+    void postLoad(MembraneLedger&);
+    /// Whether this step's energies are wanted, not only its works.
+    bool wantsEnergies(const Scene& now) const;
+    /// Whether the values are those of the step `now`.
+    bool isUpToDate(const Scene& now) const;
     /// Fetches what a saved ledger needs to go on.
     void preSave(MembraneLedger&);
     Real balance() const;
@@ -41,9 +46,13 @@ public:
         ((Real, angularMomentum, 0., Attr::readonly, "Angular momentum of the free nodes about z [N m s]."))
         ((Real, angularImpulse, 0., Attr::readonly, "Integral of the torque about z of all forces on the free nodes [N m s]."))
         ((Real, initialAngularMomentum, 0., Attr::readonly, "Angular momentum about z at the first step [N m s]."))
-        ((vector<Real>, lastPowers, , (Attr::readonly | Attr::hidden), "Powers [W] of crease, damping, drag, driven nodes, others at the velocities after the last step."))
+        ((int, period, 1, Attr::triggerPostLoad, "Steps between two times at which all values are brought up to date, > 0; also done in the first step, when O.dt changes, while the works of a "
+            "single step are more than a thousandth of the energies, and at the end of a run. "
+            "What a MembraneIntegrator has to add up, is added up in every step. With interactions every step is brought up to date."))
+        ((vector<Real>, doneWorks, , (Attr::readonly | Attr::hidden), "Works [J] of crease, damping, drag, driven nodes, others, and angular impulse [N m s], up to half a step after the last one."))
+        ((Real, doneKinks, 0., (Attr::readonly | Attr::hidden), "kinkError up to the last step [J]."))
+        ((Real, countedStep, 0., (Attr::readonly | Attr::hidden), "O.dt of the last step [s]."))
         ((vector<Real>, lastLengths, , (Attr::readonly | Attr::hidden), "Lengths of the sides [m] in the last step, as of the last save."))
-        ((Real, lastTorque, 0., (Attr::readonly | Attr::hidden), "Torque about z [N m] in the last step."))
         ,
         ,
         .add_property("crease", &MembraneLedger::crease, "Energy stored in the creases [J]; with the law 'paper' and unequal heights only nearly minus creaseWork.")
@@ -54,6 +63,10 @@ public:
         .add_property("unexplained", &MembraneLedger::unexplained, "balance - kinkError [J]: the rest of the time step's error, and of the book-keeping.")
     );
     // clang-format on
+
+private:
+    long upToDate_ = -1;    ///< step to which all values belong
+    bool restless_ = false; ///< the last step's works were large: a watch must not miss what comes
 };
 REGISTER_SERIALIZABLE(MembraneLedger);
 

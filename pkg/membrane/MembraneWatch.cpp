@@ -36,7 +36,7 @@ void MembraneWatch::postLoad(MembraneWatch&) {
 
 void MembraneWatch::action() {
     if (!ledger || !ledger->forces) throw std::runtime_error("MembraneWatch: ledger is not set, or has no forces");
-    if (ledger->dead) return;
+    if (ledger->dead || !ledger->isUpToDate(*scene)) return;
     if (floor_ == 0.)
         for (const ::membrane::Side& s : ledger->forces->membrane->rest().sides)
             floor_ += 0.5 * std::abs(s.stiffness) * std::pow(noStrain * s.restLength, 2);

@@ -14,7 +14,7 @@ public:
     // clang-format off
     YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MembraneWatch, GlobalEngine,
         "Stops a run that goes wrong. A time step too long, for the mesh or for sides that snap between taut and buckled, shows as energy "
-        "from nowhere long before numbers overflow, and may never overflow at all. In every step the watch looks at what sides, damping and drag have "
+        "from nowhere long before numbers overflow, and may never overflow at all. Whenever the ledger is up to date the watch looks at what sides, damping and drag have "
         "given since their lowest, and in every `period` steps also at the creases; where that is more than `tolerance` of all energy it raises "
         "RuntimeError, with the part, the side or crease and the node to blame. :yref:`restore` then brings back the last good state. "
         "Put it after :yref:`MembraneLedger`; it rests while that is dead. Nodes that are given other velocities by hand are energy from nowhere, too: "

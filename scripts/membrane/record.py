@@ -88,6 +88,7 @@ class Recorder:
         self._phases = phases = measures.nearest_turn(lead - self._first_lead, self._phases)
         length = np.linalg.norm(x[self._sides[:, 1]] - x[self._sides[:, 0]], axis=1)
         ledger = self.sail.ledger
+        crease = ledger.crease  # computed at each call
         row = {
             "time": time,
             "deployment_rate": measures.deployment_rate(self.mesh, x),
@@ -97,7 +98,7 @@ class Recorder:
             **{f"phase_difference_{i}": phases[i] for i in range(4)},
             "kinetic_energy": ledger.kinetic,
             "elastic_energy": ledger.elastic,
-            "crease_energy": ledger.crease,
+            "crease_energy": crease,
             "gravity_energy": ledger.potential,
             "crease_work": ledger.creaseWork,
             "damping_work": ledger.dampingWork,
@@ -106,7 +107,7 @@ class Recorder:
             "contact_work": ledger.contactWork,
             "energy_balance": ledger.balance,
             "kink_error": ledger.kinkError,
-            "crease_defect": ledger.creaseDefect,
+            "crease_defect": crease - ledger.initialCrease + ledger.creaseWork,
             "angular_momentum": ledger.angularMomentum,
             "angular_impulse": ledger.angularImpulse,
             "buckled_sides": int(np.sum(length < self._critical)),

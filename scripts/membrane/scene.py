@@ -17,6 +17,8 @@ NODE_MASK = 1 << 29  # of nodes of a MembraneIntegrator
 # What NewtonIntegrator moves: all but facets of the spool and nodes of a MembraneIntegrator.
 INTEGRATED = NODE_MASK - 1 - spool.SPOOL_MASK
 
+LEDGER_PERIOD = 10  # at most so many steps between two looks at all energies
+
 _plugin = _load.load()
 
 
@@ -180,7 +182,8 @@ def set_engines(
         interactions.
     exchange_period : int
         Of path "fused": steps between two updates of the bodies that touch nothing; see
-        MembraneIntegrator.exchangePeriod.
+        MembraneIntegrator.exchangePeriod. The ledger's energies are brought up to date as seldom,
+        but at least every LEDGER_PERIOD steps, for the watch.
     driven : sequence of int
         Ids of bodies that turn about z at `omega` [rad/s]: spool facets, ends of tethers.
     touching : sequence of int
@@ -254,7 +257,9 @@ def set_engines(
     )
     centrifugal = _plugin["CentrifugalField"](membrane=membrane, omega=omega, dead=True)
     newton = yade.NewtonIntegrator(damping=0, gravity=gravity, mask=INTEGRATED)
-    ledger = _plugin["MembraneLedger"](forces=forces, gravity=gravity)
+    ledger = _plugin["MembraneLedger"](
+        forces=forces, gravity=gravity, period=min(exchange_period, LEDGER_PERIOD) if fused else 1
+    )
     # With no other body that moves, a fused membrane needs none of YADE's loops over bodies.
     others = len(scene.bodies) - len(membrane.bodyIds) - len(facets)
     newton.dead = fused and not others

@@ -24,7 +24,12 @@ Partition partition(int nodes, int parts, int chunkSize);
 /// Elements in a row of the arrangement, at most blockSize. After its end there are elements -1 up to whole lanes.
 struct Block {
     int begin, end;
-    bool run; ///< each corner's nodes follow one another: read and written without indices
+    bool run;             ///< each corner's nodes follow one another: read and written without indices
+    bool uniform = false; ///< its elements, padding too, share their constants
+
+    int count() const { return end - begin; }
+    int paddedCount() const { return wholeLanes(end - begin); }
+    int paddedEnd() const { return begin + paddedCount(); }
 };
 
 /// An order of elements of K corners in which as many as possible lie in runs, where corner k of the next element is

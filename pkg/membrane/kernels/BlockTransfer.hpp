@@ -22,7 +22,7 @@ struct BlockVectors {
 /// \param node of that corner for each element of the block
 inline Components cornerOf(const Block& block, const int* node, const Components& from, BlockVectors& room) {
     if (block.run) return from + node[0];
-    for (int e = 0; e < wholeLanes(block.end - block.begin); ++e) {
+    for (int e = 0; e < block.paddedCount(); ++e) {
         room.component[0][e] = from.x[node[e]];
         room.component[1][e] = from.y[node[e]];
         room.component[2][e] = from.z[node[e]];
@@ -30,38 +30,40 @@ inline Components cornerOf(const Block& block, const int* node, const Components
     return room.components();
 }
 
-/// to += value on one corner of each element.
-inline void addCorner(const Block& block, const BlockVectors& value, const int* node, const Components& to) {
-    const int count = block.end - block.begin;
+/// Sets what a kernel found for padding to 0: adding a block's values runs on to whole lanes.
+inline void clearPadding(const Block& block, double* value) {
+    for (int e = block.count(); e < block.paddedCount(); ++e) value[e] = 0.;
+}
+inline void clearPadding(const Block& block, BlockVectors& value) {
+    for (auto& component : value.component) clearPadding(block, component);
+}
+
+/// to += sign * value on one corner of each element; the padding's value must be 0.
+template <int sign>
+inline void addToCorner(const Block& block, const BlockVectors& value, const int* node, const Components& to) {
+    const double *const x = value.component[0], *const y = value.component[1], *const z = value.component[2];
     if (block.run) {
-        double* const target[] = {to.x + node[0], to.y + node[0], to.z + node[0]};
-        for (int k = 0; k < 3; ++k)
+        const int padded = block.paddedCount();
+        const Components target = to + node[0];
 #pragma GCC ivdep
-            for (int e = 0; e < count; ++e) target[k][e] += value.component[k][e];
+        for (int e = 0; e < padded; ++e) {
+            target.x[e] += sign * x[e];
+            target.y[e] += sign * y[e];
+            target.z[e] += sign * z[e];
+        }
     } else {
-        for (int e = 0; e < count; ++e) {
-            to.x[node[e]] += value.component[0][e];
-            to.y[node[e]] += value.component[1][e];
-            to.z[node[e]] += value.component[2][e];
+        for (int e = 0; e < block.count(); ++e) {
+            to.x[node[e]] += sign * x[e];
+            to.y[node[e]] += sign * y[e];
+            to.z[node[e]] += sign * z[e];
         }
     }
 }
-
-/// to -= value on one corner of each element.
+inline void addCorner(const Block& block, const BlockVectors& value, const int* node, const Components& to) {
+    addToCorner<1>(block, value, node, to);
+}
 inline void subtractCorner(const Block& block, const BlockVectors& value, const int* node, const Components& to) {
-    const int count = block.end - block.begin;
-    if (block.run) {
-        double* const target[] = {to.x + node[0], to.y + node[0], to.z + node[0]};
-        for (int k = 0; k < 3; ++k)
-#pragma GCC ivdep
-            for (int e = 0; e < count; ++e) target[k][e] -= value.component[k][e];
-    } else {
-        for (int e = 0; e < count; ++e) {
-            to.x[node[e]] -= value.component[0][e];
-            to.y[node[e]] -= value.component[1][e];
-            to.z[node[e]] -= value.component[2][e];
-        }
-    }
+    addToCorner<-1>(block, value, node, to);
 }
 
 } // namespace membrane

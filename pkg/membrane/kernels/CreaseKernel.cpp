@@ -18,12 +18,11 @@ struct Rest {
 };
 
 template <bool conservative>
-inline void compute(int count, const Components (&x)[4], const Constants& c, const CreaseLaw& parameters,
+inline void compute(int padded, const Components (&x)[4], const Constants& c, const CreaseLaw& parameters,
                     BlockVectors (&force)[4]) {
     CreaseLaw law = parameters;
     law.conservative = conservative; // known to the compiler
     const Components a = x[0], b = x[1], apexC = x[2], apexD = x[3];
-    const int padded = wholeLanes(count);
 #pragma GCC ivdep
     for (int e = 0; e < padded; ++e) {
         const Rest rest{c.length[e],        c.heightC[e], c.heightD[e], c.sign[e],
@@ -48,7 +47,7 @@ inline void addBlocks(const CreaseTable& table, const CreaseLaw& law, int group,
         for (int k = 0; k < 4; ++k) node[k] = table.order.node[k].data() + block.begin;
         const Components corners[] = {cornerOf(block, node[0], x, room[0]), cornerOf(block, node[1], x, room[1]),
                                       cornerOf(block, node[2], x, room[2]), cornerOf(block, node[3], x, room[3])};
-        compute<conservative>(block.end - block.begin, corners,
+        compute<conservative>(block.paddedCount(), corners,
                               {table.length.data() + block.begin, table.heightC.data() + block.begin,
                                table.heightD.data() + block.begin, table.sign.data() + block.begin,
                                table.steepestLever.data() + block.begin, table.slopeC.data() + block.begin,
@@ -75,12 +74,12 @@ CreaseTable creaseTable(const RestState& rest, const Partition& partition) {
     CreaseTable table;
     table.order = arrange<4>(corners, partition);
     for (const int e : table.order.element) {
-        const CreaseRest r = e >= 0 ? rest.creases[e].rest : CreaseRest{1., 1., 1., 1.};
+        const CreaseRest r = e >= 0 ? rest.creases[e].rest : CreaseRest{0., 1., 1., 1.}; // padding without forces
         table.length.push_back(r.length);
         table.heightC.push_back(r.heightC);
         table.heightD.push_back(r.heightD);
         table.sign.push_back(r.sign);
-        table.steepestLever.push_back(r.steepestLever());
+        table.steepestLever.push_back(e >= 0 ? r.steepestLever() : 1.);
         table.slopeC.push_back(r.slopeC());
         table.slopeD.push_back(r.slopeD());
     }

@@ -6,9 +6,8 @@
 namespace membrane {
 namespace {
 
-inline void compute(int count, const Components (&x)[3], const Components (&u)[3], double (&weight)[3][blockSize]) {
+inline void compute(int padded, const Components (&x)[3], const Components (&u)[3], double (&weight)[3][blockSize]) {
     const Components a = x[0], b = x[1], c = x[2], ua = u[0], ub = u[1], uc = u[2];
-    const int padded = wholeLanes(count);
 #pragma GCC ivdep
     for (int e = 0; e < padded; ++e) {
         const Eigen::Vector3d corner = a.at(e);
@@ -37,21 +36,22 @@ MEMBRANE_VECTORISED void addDragWeights(const DragTable& table, int group, const
     double added[3][blockSize];
     for (int i = table.order.groups[group]; i < table.order.groups[group + 1]; ++i) {
         const Block block = table.order.blocks[i];
-        const int count = block.end - block.begin;
         const int* node[3];
         for (int k = 0; k < 3; ++k) node[k] = table.order.node[k].data() + block.begin;
         const Components at[] = {cornerOf(block, node[0], x, roomX[0]), cornerOf(block, node[1], x, roomX[1]),
                                  cornerOf(block, node[2], x, roomX[2])};
         const Components moving[] = {cornerOf(block, node[0], u, roomU[0]), cornerOf(block, node[1], u, roomU[1]),
                                      cornerOf(block, node[2], u, roomU[2])};
-        compute(count, at, moving, added);
+        compute(block.paddedCount(), at, moving, added);
         for (int k = 0; k < 3; ++k) {
+            clearPadding(block, added[k]);
             if (block.run) {
                 double* const target = weight + node[k][0];
+                const int padded = block.paddedCount();
 #pragma GCC ivdep
-                for (int e = 0; e < count; ++e) target[e] += added[k][e];
+                for (int e = 0; e < padded; ++e) target[e] += added[k][e];
             } else {
-                for (int e = 0; e < count; ++e) weight[node[k][e]] += added[k][e];
+                for (int e = 0; e < block.count(); ++e) weight[node[k][e]] += added[k][e];
             }
         }
     }

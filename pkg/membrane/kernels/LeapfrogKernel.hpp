@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "Coordinates.hpp"
+#include "Sums.hpp"
 #include <Eigen/Core>
 
 namespace membrane {
@@ -12,7 +13,7 @@ struct Motion {
     Components u;                 ///< velocities [m/s] at the time of `x`; then extrapolated to the next
     Components elastic;           ///< forces [N] of the sides and from outside; then 0
     Components damping;           ///< forces [N] of damping, and
-    Components crease;            ///< of creases, then 0; used only if the works are summed, else they are in `elastic`
+    Components crease;            ///< of creases, then 0; used only with sums, else they are in `elastic`
     double* dragWeight = nullptr; ///< see nodeDrag(); then 0; none: no drag
     const double* mass = nullptr; ///< [kg]
     double dt = 0.;               ///< [s]
@@ -24,16 +25,18 @@ struct Motion {
 
 /// Sums over nodes for the energy ledger.
 struct MotionSums {
-    double kinetic = 0.;                                          ///< m v- v+ / 2 [J]
-    double potential = 0.;                                        ///< -m g x [J]
-    double angularMomentum = 0.;                                  ///< about z, at the mean of v- and v+ [N m s]
-    double torque = 0.;                                           ///< about z, of all forces [N m]
-    double arriving[3] = {0., 0., 0.}, leaving[3] = {0., 0., 0.}; ///< power [W] of creases, damping, drag at v-, v+
+    double power[3] = {0., 0., 0.}; ///< of creases, damping, drag at the mean of v- and v+ [W]
+    double torque = 0.;             ///< about z, of all forces [N m]
+    // Only with Sums::energies:
+    double arriving[3] = {0., 0., 0.}; ///< power of creases, damping, drag at v- [W]
+    double kinetic = 0.;               ///< m v- v+ / 2 [J]
+    double potential = 0.;             ///< -m g x [J]
+    double angularMomentum = 0.;       ///< about z, at the mean of v- and v+ [N m s]
 };
 
 /// Moves the nodes begin..end-1 by one step of YADE's leapfrog: v += dt a, x += dt v.
-/// \param sums what the ledger needs is added to them; none: not wanted
+/// \param wanted sums, which are added to `sums`
 /// \return 0 if all new positions are finite, else NaN
-double moveNodes(int begin, int end, const Motion& motion, MotionSums* sums);
+double moveNodes(int begin, int end, const Motion& motion, Sums wanted, MotionSums& sums);
 
 } // namespace membrane

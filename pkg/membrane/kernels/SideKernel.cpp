@@ -19,77 +19,83 @@ struct Results {
     double energy[blockSize], kink[blockSize];
 };
 
-template <bool elastic, bool damped, bool energy>
-inline void compute(int count, const Components& xa, const Components& xb, const Components& ua, const Components& ub,
+/// Which forces of the sides are wanted: springs, brakes, both added together or both kept apart.
+enum class Wanted { springs, brakes, together, apart };
+
+template <Wanted wanted, Sums sums>
+inline void compute(int padded, const Components& xa, const Components& xb, const Components& ua, const Components& ub,
                     const Constants& c, Results& out) {
-    const int padded = wholeLanes(count);
+    constexpr bool springs = wanted != Wanted::brakes, brakes = wanted != Wanted::springs;
 #pragma GCC ivdep
     for (int e = 0; e < padded; ++e) {
         const Eigen::Vector3d span = xb.at(e) - xa.at(e);
         const double length = span.norm();
         const double inverse = length > 0. ? 1. / length : 0.;
-        if (elastic) {
-            const double pull = sideTension(length, c.stiffness[e], c.restLength[e], c.critical[e]) * inverse;
-            for (int k = 0; k < 3; ++k) out.pull.component[k][e] = pull * span[k];
+        double pull = springs ? sideTension(length, c.stiffness[e], c.restLength[e], c.critical[e]) : 0.;
+        double brake = brakes ? c.damping[e] * span.dot(ub.at(e) - ua.at(e)) * inverse : 0.;
+        if (wanted == Wanted::together) pull += brake;
+        pull *= inverse;
+        brake *= inverse;
+        for (int k = 0; k < 3; ++k) {
+            if (springs) out.pull.component[k][e] = pull * span[k];
+            if (wanted == Wanted::brakes || wanted == Wanted::apart) out.brake.component[k][e] = brake * span[k];
         }
-        if (damped) {
-            const double rate = span.dot(ub.at(e) - ua.at(e)) * inverse;
-            const double brake = c.damping[e] * rate * inverse;
-            for (int k = 0; k < 3; ++k) out.brake.component[k][e] = brake * span[k];
-        }
-        if (energy) {
-            out.energy[e] = sideEnergy(length, c.stiffness[e], c.restLength[e], c.critical[e]);
+        if (sums == Sums::energies) out.energy[e] = sideEnergy(length, c.stiffness[e], c.restLength[e], c.critical[e]);
+        if (sums != Sums::none) {
             out.kink[e] = kinkEnergy(c.length[e], length, c.stiffness[e], c.critical[e]);
             c.length[e] = length;
         }
     }
 }
 
-template <bool elastic, bool damped, bool energy>
-inline SideEnergy addBlocks(SideTable& table, int group, const SideJob& job) {
-    SideEnergy sum;
+/// Adds a block's values, lane by lane, to a sum; those of padding must be 0.
+inline void addUp(const Block& block, const double* value, double (&sum)[lanes]) {
+    for (int e = 0; e < block.paddedCount(); e += lanes)
+        for (int lane = 0; lane < lanes; ++lane) sum[lane] += value[e + lane];
+}
+inline double total(const double (&sum)[lanes]) {
+    double all = 0.;
+    for (const double part : sum) all += part;
+    return all;
+}
+
+template <Wanted wanted, Sums sums> inline SideEnergy addBlocks(SideTable& table, int group, const SideJob& job) {
+    constexpr bool springs = wanted != Wanted::brakes, brakes = wanted != Wanted::springs;
+    constexpr bool brakesApart = wanted == Wanted::brakes || wanted == Wanted::apart;
+    double stored[lanes] = {}, missed[lanes] = {};
     Results results;
     BlockVectors gathered[4];
     for (int i = table.order.groups[group]; i < table.order.groups[group + 1]; ++i) {
         const Block block = table.order.blocks[i];
-        const int count = block.end - block.begin;
         const int first = table.constants[i];
         const Constants constants{table.stiffness.data() + first, table.restLength.data() + first,
                                   table.critical.data() + first, table.damping.data() + first,
-                                  energy ? table.length.data() + block.begin : nullptr};
+                                  sums != Sums::none ? table.length.data() + block.begin : nullptr};
         const int* const a = table.order.node[0].data() + block.begin;
         const int* const b = table.order.node[1].data() + block.begin;
-        compute<elastic, damped, energy>(
-            count, cornerOf(block, a, job.x, gathered[0]), cornerOf(block, b, job.x, gathered[1]),
-            damped ? cornerOf(block, a, job.u, gathered[2]) : Components(),
-            damped ? cornerOf(block, b, job.u, gathered[3]) : Components(), constants, results);
-        if (elastic && damped && job.elastic.x == job.damping.x)
-            for (int k = 0; k < 3; ++k) {
-                const int padded = wholeLanes(count);
-#pragma GCC ivdep
-                for (int e = 0; e < padded; ++e) results.pull.component[k][e] += results.brake.component[k][e];
-            }
-        if (elastic) {
+        compute<wanted, sums>(block.paddedCount(), cornerOf(block, a, job.x, gathered[0]),
+                              cornerOf(block, b, job.x, gathered[1]),
+                              brakes ? cornerOf(block, a, job.u, gathered[2]) : Components(),
+                              brakes ? cornerOf(block, b, job.u, gathered[3]) : Components(), constants, results);
+        if (block.uniform && block.count() < block.paddedCount()) { // its constants are not 0 for padding
+            clearPadding(block, results.pull);
+            clearPadding(block, results.brake);
+            clearPadding(block, results.energy);
+            clearPadding(block, results.kink);
+        }
+        if (springs) {
             addCorner(block, results.pull, a, job.elastic);
             subtractCorner(block, results.pull, b, job.elastic);
         }
-        if (damped && !(elastic && job.elastic.x == job.damping.x)) {
+        if (brakesApart) {
             addCorner(block, results.brake, a, job.damping);
             subtractCorner(block, results.brake, b, job.damping);
         }
         if (job.prefetch) job.prefetch->next();
-        if (energy) {
-            double stored = 0., missed = 0.;
-#pragma omp simd reduction(+ : stored, missed)
-            for (int e = 0; e < count; ++e) {
-                stored += results.energy[e];
-                missed += results.kink[e];
-            }
-            sum.elastic += stored;
-            sum.kink += missed;
-        }
+        if (sums == Sums::energies) addUp(block, results.energy, stored);
+        if (sums != Sums::none) addUp(block, results.kink, missed);
     }
-    return sum;
+    return {total(stored), total(missed)};
 }
 
 /// Stiffness, rest length, critical length, damping of a side.
@@ -110,12 +116,26 @@ bool areAlike(const SideConstants& a, const SideConstants& b) {
     MEMBRANE_VECTORISED SideEnergy name(SideTable& table, int group, const SideJob& job) {                             \
         return addBlocks<__VA_ARGS__>(table, group, job);                                                              \
     }
-MEMBRANE_SIDES(elasticSides, true, false, false)
-MEMBRANE_SIDES(dampedSides, true, true, false)
-MEMBRANE_SIDES(brakes, false, true, false)
-MEMBRANE_SIDES(elasticSidesWithEnergy, true, false, true)
-MEMBRANE_SIDES(dampedSidesWithEnergy, true, true, true)
+MEMBRANE_SIDES(springs, Wanted::springs, Sums::none)
+MEMBRANE_SIDES(springsWithWorks, Wanted::springs, Sums::works)
+MEMBRANE_SIDES(springsWithEnergies, Wanted::springs, Sums::energies)
+MEMBRANE_SIDES(brakes, Wanted::brakes, Sums::none)
+MEMBRANE_SIDES(together, Wanted::together, Sums::none)
+MEMBRANE_SIDES(apart, Wanted::apart, Sums::none)
+MEMBRANE_SIDES(apartWithWorks, Wanted::apart, Sums::works)
+MEMBRANE_SIDES(apartWithEnergies, Wanted::apart, Sums::energies)
 #undef MEMBRANE_SIDES
+
+SideEnergy addFilm(SideTable& table, int group, const SideJob& job) {
+    const bool elastic = job.elastic.x, damped = job.damping.x;
+    if (!elastic) return brakes(table, group, job);
+    const auto fitting = [&](auto none, auto works, auto energies) {
+        return job.sums == Sums::none ? none : job.sums == Sums::works ? works : energies;
+    };
+    if (!damped) return fitting(springs, springsWithWorks, springsWithEnergies)(table, group, job);
+    if (job.sums == Sums::none && job.elastic.x == job.damping.x) return together(table, group, job);
+    return fitting(apart, apartWithWorks, apartWithEnergies)(table, group, job);
+}
 
 } // namespace
 
@@ -146,14 +166,15 @@ SideTable sideTable(const RestState& rest, const std::vector<double>& damping, c
         table.damping.push_back(c[3]);
     };
     std::vector<std::pair<SideConstants, int>> shared; // few; the last are the likeliest
-    for (const Block& block : table.order.blocks) {
+    for (Block& block : table.order.blocks) {
         const SideConstants first = constantsOf(table.order.element[block.begin]);
-        bool uniform = block.end - block.begin > blockSize / 2 && shared.size() < 64;
+        bool uniform = block.count() > blockSize / 2 && shared.size() < 64;
         for (int e = block.begin; uniform && e < block.end; ++e)
             uniform = areAlike(first, constantsOf(table.order.element[e]));
         if (uniform) {
             const auto found =
                 std::find_if(shared.rbegin(), shared.rend(), [&](const auto& s) { return areAlike(first, s.first); });
+            block.uniform = true;
             if (found != shared.rend()) {
                 table.constants.push_back(found->second);
                 continue;
@@ -164,8 +185,7 @@ SideTable sideTable(const RestState& rest, const std::vector<double>& damping, c
         if (uniform)
             for (int e = 0; e < blockSize; ++e) append(first);
         else
-            for (int e = block.begin; e < block.begin + wholeLanes(block.end - block.begin); ++e)
-                append(constantsOf(table.order.element[e]));
+            for (int e = block.begin; e < block.paddedEnd(); ++e) append(constantsOf(table.order.element[e]));
     }
     const Arrangement<2> order = arrange<2>(cables, partition);
     for (std::size_t g = 0; g + 1 < order.groups.size(); ++g) {
@@ -181,20 +201,13 @@ SideTable sideTable(const RestState& rest, const std::vector<double>& damping, c
 SideEnergy addSides(SideTable& table, const RestState& rest, const std::vector<double>& damping, int group,
                     const SideJob& job) {
     const bool elastic = job.elastic.x, damped = job.damping.x;
-    SideEnergy sum;
-    if (!elastic && !damped) return sum;
-    if (!elastic)
-        sum = brakes(table, group, job);
-    else if (job.energy)
-        sum = damped ? dampedSidesWithEnergy(table, group, job) : elasticSidesWithEnergy(table, group, job);
-    else
-        sum = damped ? dampedSides(table, group, job) : elasticSides(table, group, job);
-
+    if (!elastic && !damped) return {};
+    SideEnergy sum = addFilm(table, group, job);
     for (int i = table.cableGroups[group]; i < table.cableGroups[group + 1]; ++i) {
         const Side& s = rest.sides[table.cables[i]];
         const Eigen::Vector3d span = job.x.at(s.b) - job.x.at(s.a);
         const double length = span.norm();
-        if (job.energy) {
+        if (job.sums != Sums::none) {
             sum.elastic += sideEnergy(length, s.stiffness, s.restLength, s.critical);
             sum.kink += kinkEnergy(table.cableLength[i], length, s.stiffness, s.critical);
             table.cableLength[i] = length;

@@ -4,6 +4,7 @@
 #include "Arrangement.hpp"
 #include "Coordinates.hpp"
 #include "Prefetch.hpp"
+#include "Sums.hpp"
 
 namespace membrane {
 
@@ -22,23 +23,23 @@ struct SideTable {
 
 /// What the sides of one group are computed from and where their forces go.
 struct SideJob {
-    Components x;        ///< positions [m]
-    Components u;        ///< velocities [m/s] at the time of the positions; not needed without damping
-    Components elastic;  ///< forces (3), (6) [N]; none: not wanted
-    Components damping;  ///< forces (9) [N]; none: no damping; may be the same arrays as `elastic`
-    bool energy = false; ///< sum the energies below and keep the lengths
+    Components x;           ///< positions [m]
+    Components u;           ///< velocities [m/s] at the time of the positions; not needed without damping
+    Components elastic;     ///< forces (3), (6) [N]; none: not wanted
+    Components damping;     ///< forces (9) [N]; none: no damping; may be the same arrays as `elastic`
+    Sums sums = Sums::none; ///< other than none: keep the lengths
     Prefetch* prefetch = nullptr;
 };
 
 struct SideEnergy {
-    double elastic = 0.; ///< of the sides [J]
-    double kink = 0.;    ///< kinkEnergy() of the step [J]
+    double elastic = 0.; ///< of the sides [J]; only with Sums::energies
+    double kink = 0.;    ///< kinkEnergy() of the step [J]; only with sums
 };
 
 /// \param damping c of each side of `rest` [N s/m], or empty
 SideTable sideTable(const RestState& rest, const std::vector<double>& damping, const Partition& partition);
 
-/// Adds the forces of a group's sides; returns their energies if the job wants them.
+/// Adds the forces of a group's sides; returns the energies that the job wants.
 SideEnergy addSides(SideTable& table, const RestState& rest, const std::vector<double>& damping, int group,
                     const SideJob& job);
 

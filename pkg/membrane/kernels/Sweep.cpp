@@ -19,24 +19,25 @@ void addWindow(const Coordinates& window, int first, int begin, int end, Coordin
     }
 }
 
+/// Widens first..last-1 to all nodes that a group writes to, those of padding included.
 template <std::size_t K> void widen(const Arrangement<K>& order, int group, int& first, int& last) {
     for (int b = order.groups[group]; b < order.groups[group + 1]; ++b)
         for (const auto& nodes : order.node)
-            for (int e = order.blocks[b].begin; e < order.blocks[b].end; ++e) {
+            for (int e = order.blocks[b].begin; e < order.blocks[b].paddedEnd(); ++e) {
                 first = std::min(first, nodes[e]);
                 last = std::max(last, nodes[e] + 1);
             }
 }
 
 void add(MotionSums& to, const MotionSums& more) {
+    for (int k = 0; k < 3; ++k) {
+        to.power[k] += more.power[k];
+        to.arriving[k] += more.arriving[k];
+    }
+    to.torque += more.torque;
     to.kinetic += more.kinetic;
     to.potential += more.potential;
     to.angularMomentum += more.angularMomentum;
-    to.torque += more.torque;
-    for (int k = 0; k < 3; ++k) {
-        to.arriving[k] += more.arriving[k];
-        to.leaving[k] += more.leaving[k];
-    }
 }
 
 } // namespace
@@ -115,7 +116,7 @@ SideEnergy Sweep::addGroup(int group, const Targets& to, const SweepStep& now, P
     job.u = Components(u);
     if (now.elastic) job.elastic = to.elastic;
     if (!laws_.damping.empty()) job.damping = to.damping;
-    job.energy = now.sums;
+    job.sums = now.sums;
     job.prefetch = prefetch;
     const SideEnergy energy = addSides(sides_, *rest_, laws_.damping, group, job);
     if (creases_.order.size()) addCreases(creases_, laws_.crease, group, job.x, to.crease);
@@ -193,7 +194,7 @@ void Sweep::sweepPart(int part, const SweepStep& now) {
         const int end = partition_.chunks[chunk + 1];
         for (auto stop = std::lower_bound(foreign_.begin(), foreign_.end(), begin); begin < end; ++stop) {
             const int last = stop == foreign_.end() ? end : std::min(end, *stop);
-            if (begin < last) sums.lost += moveNodes(begin, last, motion, now.sums ? &sums.motion : nullptr);
+            if (begin < last) sums.lost += moveNodes(begin, last, motion, now.sums, sums.motion);
             begin = last + 1;
             if (stop == foreign_.end()) break;
         }
@@ -212,7 +213,7 @@ bool Sweep::step(const SweepStep& now) {
         clearForces();
     for (const auto& [node, f] : outside) elastic_.add(node, f);
     moved_ = now.move;
-    if (now.sums && !hasLengths_) {
+    if (now.sums != Sums::none && !hasLengths_) {
         std::vector<double> before(rest_->sides.size()); // from where the nodes were a step ago
         for (std::size_t i = 0; i < before.size(); ++i) {
             const Side& s = rest_->sides[i];
@@ -220,7 +221,7 @@ bool Sweep::step(const SweepStep& now) {
         }
         setLengths(before);
     }
-    if (!now.sums) hasLengths_ = false;
+    if (now.sums == Sums::none) hasLengths_ = false;
 
     const int parts = partition_.partCount();
     if (parts == 1) {

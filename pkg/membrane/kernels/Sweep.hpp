@@ -23,7 +23,7 @@ struct SweepStep {
     bool move = true;                                  ///< false: forces only
     bool elastic = true;                               ///< false: without the sides' springs
     bool apart = false; ///< keep the forces of damping and creases apart from those of the springs; needed for `sums`
-    bool sums = false;  ///< sum what the energy ledger needs
+    Sums sums = Sums::none;
 };
 
 /// All forces of a membrane and the leapfrog of its nodes, in one sweep through memory: as soon as the last force on a
@@ -58,7 +58,7 @@ public:
     /// Forces [N] from outside on owned nodes, for the next step only.
     std::vector<std::pair<int, Eigen::Vector3d>> outside;
 
-    /// Sums over the owned nodes, and energies of all sides, in the last step with sums.
+    /// Sums over the owned nodes, and energies of all sides, in the last step with such.
     const MotionSums& motionSums() const { return motion_; }
     const SideEnergy& sideEnergies() const { return energy_; }
     /// Lengths [m] of the sides in the last step with sums; empty if there was none.

@@ -59,24 +59,24 @@ inline CreaseState creaseState(const Rest& rest, const Eigen::Vector3d& a, const
     const double length = span.norm();
     const bool whole = length > collapsedFraction * rest.length;
     const double inverse = whole ? 1. / length : 0.; // without an axis there is neither angle nor force
-    const Eigen::Vector3d axis = inverse * span;
-    const double alongC = toC.dot(axis), alongD = toD.dot(axis);
-    const Eigen::Vector3d armC = toC - alongC * axis, armD = toD - alongD * axis;
-    s.heightC = armC.norm();
-    s.heightD = armD.norm();
-    const double lever = std::min(inverse, rest.steepestLever());
-    s.footC = lever * alongC;
-    s.footD = lever * alongD;
+    // Twice the areas of ABC and ABD; as vectors they are the heights, turned about AB by a right angle.
+    const Eigen::Vector3d areaC = span.cross(toC), areaD = span.cross(toD);
+    const double doubleC = areaC.norm(), doubleD = areaD.norm();
+    s.heightC = inverse * doubleC;
+    s.heightD = inverse * doubleD;
+    const double lever = std::min(inverse, rest.steepestLever()) * inverse;
+    s.footC = lever * toC.dot(span);
+    s.footD = lever * toD.dot(span);
 
     // The branch cut of atan2 is moved from pi (flat) to -pi/2, away from both closed and flat.
     constexpr double pi = 3.14159265358979323846;
-    const double angle = atan2(rest.sign * axis.dot(armC.cross(armD)), armC.dot(armD));
+    const double angle = atan2(rest.sign * length * areaC.dot(toD), areaC.dot(areaD));
     s.theta = whole ? (angle <= -0.5 * pi ? angle + 2. * pi : angle) : 0.;
 
-    const double inverseC = s.heightC > collapsedFraction * rest.heightC ? 1. / s.heightC : 0.;
-    const double inverseD = s.heightD > collapsedFraction * rest.heightD ? 1. / s.heightD : 0.;
-    s.openC = (-rest.sign * inverseC) * axis.cross(armC);
-    s.openD = (rest.sign * inverseD) * axis.cross(armD);
+    const double inverseC = s.heightC > collapsedFraction * rest.heightC ? 1. / doubleC : 0.;
+    const double inverseD = s.heightD > collapsedFraction * rest.heightD ? 1. / doubleD : 0.;
+    s.openC = (-rest.sign * inverseC) * areaC;
+    s.openD = (rest.sign * inverseD) * areaD;
     return s;
 }
 
