@@ -99,4 +99,10 @@ template bool copyBuffer(const boost::python::object&, const string&, vector<Vec
 template bool copyBuffer(const boost::python::object&, const string&, vector<Real>&);
 template bool copyBuffer(const boost::python::object&, const string&, vector<int>&);
 
+vector<Vector3r> pointsFrom(const boost::python::object& given, const std::string& field) {
+    vector<Vector3r> points;
+    if (copyBuffer(given, field, points)) return points;
+    return boost::python::extract<vector<Vector3r>>(given)();
+}
+
 } // namespace yade

@@ -11,4 +11,8 @@ namespace yade {
 template <class T>
 bool copyBuffer(const boost::python::object& given, const std::string& field, std::vector<T>& values);
 
+/// The positions that a numpy array (N, 3) or a sequence of vectors holds.
+/// \throws std::invalid_argument naming `field` if the shape or a number does not fit
+std::vector<Vector3r> pointsFrom(const boost::python::object& given, const std::string& field);
+
 } // namespace yade

@@ -171,10 +171,7 @@ vector<int> Membrane::addBodies(const vector<Vector3r>& at, Real radius) {
 }
 
 vector<int> Membrane::addBodiesPy(const boost::python::object& at, Real radius) {
-    vector<Vector3r> places;
-    if (!copyBuffer(at, "Membrane.addBodies: positions", places))
-        places = boost::python::extract<vector<Vector3r>>(at)();
-    return addBodies(places, radius);
+    return addBodies(pointsFrom(at, "Membrane.addBodies: positions"), radius);
 }
 
 void Membrane::addInteractions() {
@@ -220,13 +217,15 @@ Real Membrane::elasticEnergy() const {
     return energy;
 }
 
-vector<Real> Membrane::lengths(const vector<Vector3r>& at) const {
-    const ::membrane::Points x = positions(*Omega::instance().getScene(), at);
+vector<Real> Membrane::lengths(const boost::python::object& at) const {
+    const ::membrane::Points x =
+        positions(*Omega::instance().getScene(), pointsFrom(at, "Membrane.lengths: positions"));
     return ofSides(rest_, [&x](const ::membrane::Side& s) -> Real { return (x[s.b] - x[s.a]).norm(); });
 }
 
-vector<Real> Membrane::tensions(const vector<Vector3r>& at) const {
-    const ::membrane::Points x = positions(*Omega::instance().getScene(), at);
+vector<Real> Membrane::tensions(const boost::python::object& at) const {
+    const ::membrane::Points x =
+        positions(*Omega::instance().getScene(), pointsFrom(at, "Membrane.tensions: positions"));
     return ofSides(rest_, [&x](const ::membrane::Side& s) -> Real {
         return ::membrane::sideTension((x[s.b] - x[s.a]).norm(), s.stiffness, s.restLength, s.critical);
     });

@@ -38,8 +38,8 @@ public:
     vector<Real> stiffnesses() const;
     vector<Real> criticalLengths() const;
     vector<Real> masses() const { return rest_.masses; }
-    vector<Real> lengths(const vector<Vector3r>& at) const;
-    vector<Real> tensions(const vector<Vector3r>& at) const;
+    vector<Real> lengths(const boost::python::object& at) const;
+    vector<Real> tensions(const boost::python::object& at) const;
     Real area() const { return rest_.area; }
 
     // clang-format off
@@ -77,9 +77,9 @@ public:
         .def("removeInteractions", &Membrane::removeInteractions, "Remove the interactions of the sides, if there are any.")
         .add_property("hasInteractions", &Membrane::hasInteractions, "Whether the sides are interactions of the scene.")
         .def("elasticEnergy", &Membrane::elasticEnergy, "Strain energy of all sides in the scene's present state [J].")
-        .def("lengths", &Membrane::lengths, (boost::python::arg("positions") = vector<Vector3r>()), "Length of each side [m] at given positions of "
+        .def("lengths", &Membrane::lengths, (boost::python::arg("positions") = boost::python::list()), "Length of each side [m] at given positions of "
             "the N nodes [m]; default: the present ones.")
-        .def("tensions", &Membrane::tensions, (boost::python::arg("positions") = vector<Vector3r>()), "Elastic tension of each side [N], negative in "
+        .def("tensions", &Membrane::tensions, (boost::python::arg("positions") = boost::python::list()), "Elastic tension of each side [N], negative in "
             "compression, at given positions of the N nodes [m]; default: the present ones.")
     );
     // clang-format on

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneForceEngine.hpp"
+#include "Buffers.hpp"
 #include "Faults.hpp"
 #include "MembraneLedger.hpp"
 #include "TimeStepState.hpp"
@@ -276,10 +277,11 @@ Real MembraneForceEngine::creaseEnergyNow() {
     return creaseEnergy(membrane->positions(*Omega::instance().getScene()));
 }
 
-vector<Real> MembraneForceEngine::creaseAngles(const vector<Vector3r>& at) {
+vector<Real> MembraneForceEngine::creaseAngles(const boost::python::object& at) {
     writeBack();
     if (!membrane) throw std::runtime_error("MembraneForceEngine: membrane is not set");
-    const ::membrane::Points x = membrane->positions(*Omega::instance().getScene(), at);
+    const ::membrane::Points x = membrane->positions(*Omega::instance().getScene(),
+                                                     pointsFrom(at, "MembraneForceEngine.creaseAngles: positions"));
     vector<Real> angles;
     for (const ::membrane::Crease& c : membrane->rest().creases)
         angles.push_back(::membrane::creaseState(c.rest, x[c.a], x[c.b], x[c.c], x[c.d]).theta);

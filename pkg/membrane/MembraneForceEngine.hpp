@@ -50,7 +50,7 @@ public:
     Real criticalTimeStep();
     Real creaseEnergy(const ::membrane::Points& x) const;
     Real creaseEnergyNow();
-    vector<Real> creaseAngles(const vector<Vector3r>& at);
+    vector<Real> creaseAngles(const boost::python::object& at);
     ::membrane::CreaseLaw law() const;
 
     // clang-format off
@@ -77,7 +77,7 @@ public:
         .def("criticalTimeStep", &MembraneForceEngine::criticalTimeStep, "Estimate of the critical time step [s] in the present state, from the actual "
             "stiffnesses, damping, drag, creases and masses; contacts of other functors are not counted.")
         .def("creaseEnergy", &MembraneForceEngine::creaseEnergyNow, "Energy [J] stored in the creases in the present state.")
-        .def("creaseAngles", &MembraneForceEngine::creaseAngles, (boost::python::arg("positions") = vector<Vector3r>()), "Angle [rad] of each crease: 0 "
+        .def("creaseAngles", &MembraneForceEngine::creaseAngles, (boost::python::arg("positions") = boost::python::list()), "Angle [rad] of each crease: 0 "
             "closed, pi flat, below 0 passed through itself; at given positions of the N nodes [m], default: the present ones.")
         .def("lastPositions", &MembraneForceEngine::lastPositions, "Positions [m] of the nodes as the last step's forces saw them, before the "
             "integrator moved them; empty before the first step.")

@@ -121,9 +121,9 @@ class Recorder:
         x = self.sail.last_positions()
         length = np.linalg.norm(x[self._sides[:, 1]] - x[self._sides[:, 0]], axis=1)
         angle = np.full(len(self._sides), np.pi)
-        angle[self._crease_rows] = self.sail.forces.creaseAngles(x.tolist())
+        angle[self._crease_rows] = self.sail.forces.creaseAngles(x)
         side_data = {
-            "force": np.array(self.sail.membrane.tensions(x.tolist())),
+            "force": np.array(self.sail.membrane.tensions(x)),
             "strain": length / self._rest - 1,
             "buckled": (length < self._critical).astype(int),
             "crease_angle": angle,
