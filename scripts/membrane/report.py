@@ -116,6 +116,7 @@ def run_data(folder):
     creases = (mesh.triangles, mesh.creases, mesh.crease_signs)
     angles = np.array([crease_angles(frame, *creases) for frame in frames])
     return {
+        "name": folder.resolve().name,
         "times": [time for time, _ in shapes],
         "positions": _lengths(frames),
         "triangles": _pack(mesh.triangles, np.uint32),

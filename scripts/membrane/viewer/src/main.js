@@ -160,6 +160,7 @@ function setUpKey() {
   }
 }
 
+document.title = `Sail deployment: ${run.name}`;
 setUpControls();
 setUpKey();
 run.tables.forEach((table) => addTable(page("tables"), table));

@@ -82,7 +82,6 @@ export class Stage {
     this.run = run;
     this.onView = onView;
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.scene = new Scene();
     this.sail = new Group();
     this.scene.add(this.sail);
@@ -197,6 +196,7 @@ export class Stage {
   resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!width || !height) return;
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2)); // changes with the page's zoom
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     const half = Math.tan((FIELD_OF_VIEW * Math.PI) / 360) / Math.min(1, this.camera.aspect);
