@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The ParaView series: fields on sides and triangles, as VTK's own reader reads them."""
 
+import json
 import unittest
 from xml.etree import ElementTree
 
@@ -46,6 +47,12 @@ class TestShapes(unittest.TestCase):
         """Values (T, 3) of the sides of each triangle."""
         ends = [np.sort(np.delete(self.triangles, k, axis=1), axis=1) for k in range(3)]
         return np.array([[values[self.row[tuple(pair)]] for pair in e.tolist()] for e in ends]).T
+
+    def test_every_field_is_explained_with_its_unit(self):
+        told = json.loads((short_run() / "shapes" / "fields.json").read_text())
+        for place, fields in (("side", self.lines), ("triangle", self.film)):
+            self.assertEqual({name for name, about in told.items() if place in about}, set(fields))
+        self.assertEqual(told["tension"]["unit"], "N")
 
     def test_side_strain_is_the_relative_growth_of_the_length(self):
         strain = self.now / self.rest - 1

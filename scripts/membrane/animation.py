@@ -180,6 +180,7 @@ class Stage:
         actor = vtkActor()
         actor.SetMapper(mapper)
         actor.GetProperty().SetColor(*colour)
+        actor.GetProperty().SetAmbient(0.2)
         self.renderer.AddActor(actor)
         return actor
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a running sail leaves behind: rows of measures, shapes, frames for the pictures."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -35,19 +36,31 @@ UNITS = {
     "buckled_sides": "-",
 }
 
-# Fields of the ParaView series: unit and meaning on a side, and on a triangle.
+# Fields of the ParaView series: unit, and meaning on a side and on a triangle where it has one.
 SHAPE_FIELDS = {
-    "side_strain": ("-", "length over rest length, less 1", "mean of its three sides"),
-    "tension": ("N", "force along the side, positive when taut", "mean of its three sides"),
-    "buckled": ("-", "1 below the critical length, else 0", "share of its three sides"),
-    "crease_angle": (
-        "rad",
-        "between the two triangles: 0 folded, pi flat or no crease",
-        "of its crease farthest from flat",
-    ),
-    "area_strain": ("-", None, "area over rest area, less 1"),
-    "fold": ("-", "1 mountain, -1 valley, 0 no fold line", None),
-    "kind": ("-", "0 film, 1 crease, 2 tether", None),
+    "side_strain": {
+        "unit": "-",
+        "side": "length over rest length, less 1",
+        "triangle": "mean of its three sides",
+    },
+    "tension": {
+        "unit": "N",
+        "side": "elastic force along the side, positive when taut",
+        "triangle": "mean of its three sides",
+    },
+    "buckled": {
+        "unit": "-",
+        "side": "1 below the critical length, else 0",
+        "triangle": "share of its three sides",
+    },
+    "crease_angle": {
+        "unit": "rad",
+        "side": "between the two triangles: 0 folded face to face, pi flat or no fold line",
+        "triangle": "of its fold line farthest from flat",
+    },
+    "area_strain": {"unit": "-", "triangle": "area over rest area, less 1"},
+    "fold": {"unit": "-", "side": "1 mountain, -1 valley, 0 no fold line"},
+    "kind": {"unit": "-", "side": "0 film, 1 crease, 2 tether"},
 }
 
 
@@ -91,6 +104,7 @@ class Recorder:
         shapes = Path(folder) / "shapes"
         self._film = VtkSeries(shapes, "film", mesh.triangles)
         self._lines = VtkSeries(shapes, "sides", self._sides)
+        (shapes / "fields.json").write_text(json.dumps(SHAPE_FIELDS, indent=2) + "\n")
         # Of the tips against the spool [rad]: at the first row, where its time is 0, and since.
         self._first_lead, self._phases = None, np.zeros(4)
 
