@@ -11,7 +11,7 @@ import sys
 from dataclasses import fields
 from pathlib import Path
 
-from membrane import sail
+from membrane import report, sail
 from membrane.parameters import SailParameters, add_arguments, from_arguments
 from yade import utils
 from yade.wrapper import Omega
@@ -26,6 +26,10 @@ def command_line():
         "--out", type=Path, metavar="DIR", help="output folder (default: out, in a batch out/CASE)"
     )
     parser.add_argument("--no-pictures", action="store_true", help="draw no pictures")
+    parser.add_argument("--no-report", action="store_true", help="write no report.html")
+    parser.add_argument(
+        "--animation", action="store_true", help="also render sail.mp4 and sail.gif (Xvfb, ffmpeg)"
+    )
     add_arguments(parser)
     return parser.parse_args()
 
@@ -48,7 +52,17 @@ def main():
     folder = arguments.out or (Path("out") / case.replace("/", "_") if case else Path("out"))
     try:
         parameters = from_arguments(arguments, overrides)
-        summary = sail.deploy(parameters, folder, pictures=not arguments.no_pictures)
+        summary = sail.deploy(
+            parameters,
+            folder,
+            pictures=not arguments.no_pictures,
+            page=not arguments.no_report,
+        )
+        films = []
+        if arguments.animation:
+            from membrane.animation import animate  # loads VTK's renderer
+
+            films = animate(folder)
     except (ValueError, RuntimeError, OSError) as error:
         sys.exit(f"deploy: {error}")
     found, wall = summary["measures"], summary["wall_time"]
@@ -60,6 +74,9 @@ def main():
     )
     print("Look at:")
     shown = [] if arguments.no_pictures else ["shapes.png", "deployment.png"]
+    if not arguments.no_report and (folder / report.PAGE).exists():
+        shown.append(report.PAGE)
+    shown += [film.name for film in films]
     for name in [*shown, "history.csv", "summary.json", "shapes/film.pvd", "shapes/sides.pvd"]:
         print(f"  {folder / name}")
 

@@ -9,6 +9,8 @@ usage: scripts/run.sh COMMAND [options]
 
   deploy [-j N] [options]   fold, spin up and deploy the sail, on N threads (default 1);
                             options of scripts/deploy.py, listed by `scripts/run.sh deploy --help`
+  report FOLDER ...         write report.html again from the other results in an output folder
+  animate FOLDER ...        render sail.mp4 and sail.gif from the shapes in an output folder
   test [-j N] [--full] [MODULE ...]
                             run the tests, or those of some modules; --full adds the long ones
   bench [options]           measure the speed beside YADE's own functors and LAMMPS: tables, and
@@ -19,6 +21,7 @@ usage: scripts/run.sh COMMAND [options]
   parts [options]           what each part of the model changes and costs, into reference/parts.csv
   chart [options]           accuracy against time for every path, step and mesh, into
                             reference/chart.csv and chart.png
+  viewer                    bundle the viewer of report.html, which npm's registry holds parts of
   build                     compile the plugin into build/python
   format [--check]          format C++ and Python sources; --check changes nothing and fails where
                             a file is not formatted or a linter complains
@@ -34,6 +37,8 @@ run_packages=(yade python3-numpy python3-matplotlib python3-vtk9
     g++ cmake make libboost-dev libeigen3-dev python3-dev libgtest-dev)
 verify_packages=(calculix-ccx python3-scipy)
 bench_packages=(lammps openmpi-bin)
+animation_packages=(xvfb libgl1-mesa-dri ffmpeg)
+browser_packages=(chromium chromium-driver python3-selenium)
 format_packages=(clang-format black python3-flake8 shellcheck)
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
@@ -109,6 +114,29 @@ compile() {
     exec 9>&-
 }
 
+# Bundles the viewer of report.html with npm, unless it is up to date. Ends with 1, and a word, where npm or what it
+# fetches cannot be had, and with 2 where that cannot be bundled.
+bundle_viewer() (
+    source=$root/scripts/membrane/viewer target=$build/python/membrane/viewer.html work=$build/viewer
+    [[ ! -e $target || -n $(find "$source" -newer "$target" -print -quit) ]] || exit 0
+    command -v npm >/dev/null || (need nodejs npm) || exit 1
+    mkdir -p "$work" "${target%/*}"
+    exec 9>"$build/.lock"
+    flock 9 # one build at a time
+    cp -r "$source/." "$work"
+    cd "$work"
+    say "bundling the viewer of report.html"
+    if ! npm ci --ignore-scripts --no-audit --no-fund --fetch-retry-mintimeout=1000 --fetch-retry-maxtimeout=3000 \
+        >"$build/viewer.log" 2>&1; then
+        say "npm could not fetch the viewer's parts (see $build/viewer.log); without them there is no report.html"
+        exit 1
+    fi
+    node build.mjs "$target" || exit 2
+)
+
+# The viewer, if it can be had; all but report.html works without.
+viewer_if_possible() { bundle_viewer || (($? == 1)) || die "the viewer could not be bundled"; }
+
 # run_yade SCRIPT [-j N] [options]: runs a script in YADE, with the other options as its sys.argv[1:].
 run_yade() {
     local script=$1 threads=1
@@ -178,10 +206,14 @@ shift || true
 case $command in
 deploy)
     compile
+    viewer_if_possible
+    [[ " $* " != *" --animation "* ]] || need "${animation_packages[@]}"
     run_yade "$root/scripts/deploy.py" "$@"
     ;;
 test)
     compile
+    viewer_if_possible
+    (need "${animation_packages[@]}" "${browser_packages[@]}") || true # tests say what they lack
     run_tests "$@"
     ;;
 bench)
@@ -197,6 +229,20 @@ verify)
 stability | parts | chart)
     compile
     run_yade "$root/scripts/$command.py" "$@"
+    ;;
+viewer)
+    mkdir -p "$build"
+    bundle_viewer
+    ;;
+report)
+    compile
+    bundle_viewer || exit
+    run_yade "$root/scripts/report.py" "$@"
+    ;;
+animate)
+    need "${animation_packages[@]}"
+    compile
+    run_yade "$root/scripts/animate.py" "$@"
     ;;
 build) compile ;;
 format) format "$@" ;;

@@ -18,6 +18,8 @@ from membrane import sail, scene, spool
 from membrane.mesh import sail_mesh
 from membrane.output import read_history
 from membrane.parameters import SailParameters
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 from yade import wrapper as yade
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -244,10 +246,41 @@ class MainRun:
         self.parameters = SailParameters()
         self.folder = scratch() / "main_run"
         with quiet():
-            self.summary = sail.deploy(self.parameters, self.folder, pictures=False)
+            self.summary = sail.deploy(self.parameters, self.folder, pictures=False, page=False)
         self.history = read_history(self.folder / "history.csv")
         self.phases = np.column_stack([self.history[f"phase_difference_{i}"] for i in range(4)])
         O.reset()
+
+
+@lru_cache(maxsize=None)
+def short_run():
+    """Output folder of a run of 0.1 s with 21 shapes."""
+    O.reset()
+    folder = scratch() / "short_run"
+    p = SailParameters(duration=0.1, shapes_interval=5e-3, spin_up_tolerance=1e-2)
+    with quiet():
+        sail.deploy(p, folder, pictures=False, page=False)
+    O.reset()
+    return folder
+
+
+def read_grid(path):
+    """Points (N, 3), cell data by name and cells (M, n) of a .vtu file, by VTK's own reader."""
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    grid = reader.GetOutput()
+    data = grid.GetCellData()
+    values = {
+        data.GetArrayName(i): vtk_to_numpy(data.GetArray(i))
+        for i in range(data.GetNumberOfArrays())
+    }
+    cells = vtk_to_numpy(grid.GetCells().GetConnectivityArray())
+    return (
+        vtk_to_numpy(grid.GetPoints().GetData()),
+        values,
+        cells.reshape(grid.GetNumberOfCells(), -1),
+    )
 
 
 @lru_cache(maxsize=None)

@@ -4,6 +4,7 @@
 import json
 import unittest
 
+from membrane import report
 from support import ROOT, run_yade, scratch
 
 SCRIPT = ROOT / "scripts" / "deploy.py"
@@ -54,6 +55,7 @@ class TestDeployCommand(unittest.TestCase):
         self.assertGreaterEqual(len(listed), 6)
         for name in listed:
             self.assertGreater((scratch() / name).stat().st_size, 100, name)
+        self.assertEqual(str(folder / "report.html") in listed, report.TEMPLATE.is_file())
         for picture in ("shapes.png", "deployment.png"):
             self.assertEqual((folder / picture).read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
         self.assertEqual(len((folder / "history.csv").read_text().splitlines()), 1 + 5)

@@ -29,7 +29,7 @@ def deploy(path):
     with tempfile.TemporaryDirectory() as folder:
         done = subprocess.run(
             ["yade", "-n", "-x", "-j", "1", str(SCRIPT)]
-            + ["--path", path, "--no-pictures", "--out", folder],
+            + ["--path", path, "--no-pictures", "--no-report", "--out", folder],
             capture_output=True,
             text=True,
             timeout=3600,

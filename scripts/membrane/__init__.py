@@ -4,7 +4,7 @@
 ``import membrane`` in any script run by ``yade`` loads the plugin and gives its classes
 (`Membrane`, `MembraneMat`, `MembraneForceEngine`, …), which also appear in ``yade.wrapper``.
 The building blocks of scenes are modules of this package: `mesh`, `fold`, `spool`, `scene`,
-`measures`, `output`, `plots`.
+`measures`, `output`, `plots`, `report`, `animation`.
 """
 
 from . import _load

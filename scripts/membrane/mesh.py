@@ -193,6 +193,13 @@ def sail_mesh(
     return mesh
 
 
+def mesh_of(p):
+    """The SailMesh that the SailParameters `p` describe."""
+    return sail_mesh(
+        p.outer_width, p.inner_width, p.fold_lines, p.refine, p.spool_radius, p.tether_segments
+    )
+
+
 def sheet_mesh(rows, columns, spacing):
     """Mesh of a flat rectangular sheet of squares, each cut in two along the same diagonal.
 

@@ -6,30 +6,33 @@ import json
 import math
 import os
 from pathlib import Path
+from xml.etree import ElementTree
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import VTK_LINE, VTK_TRIANGLE, vtkCellArray, vtkUnstructuredGrid
-from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
 
 CELL_TYPES = {2: VTK_LINE, 3: VTK_TRIANGLE}
+PVD_HEAD = '<VTKFile type="Collection" version="1.0">\n<Collection>\n'
+PVD_FOOT = "</Collection>\n</VTKFile>\n"
 
 
 class VtkSeries:
     """Time series of one set of cells: a .vtu file for each frame and a .pvd file of times.
 
-    Open `folder`/`name`.pvd in ParaView. It is replaced as a whole after each complete frame, so
-    it can be read at any time, also after a crash. Write the film's triangles and its lines
-    (sides, creases, tethers) as two series.
+    Open `folder`/`name`.pvd in ParaView. It is complete after each frame, so it can be read at any
+    time, also after a crash. Write the film's triangles and its lines (sides, creases, tethers)
+    as two series.
 
     Parameters
     ----------
     folder : path
         Made if missing.
     name : str
-        Stem of the files; those of an earlier series of this name are overwritten.
+        Stem of the files; those of an earlier series of this name are removed.
     cells : (M, 2) or (M, 3) int
         Node ids of lines or of triangles, the same in all frames.
     """
@@ -41,6 +44,8 @@ class VtkSeries:
         self.folder, self.name, self.cells = Path(folder), name, cells
         self.frames = []
         self.folder.mkdir(parents=True, exist_ok=True)
+        for earlier in self.folder.glob(f"{name}_*.vtu"):
+            earlier.unlink()
 
     def write(self, time, positions, cell_data=None):
         """Append a frame.
@@ -74,18 +79,23 @@ class VtkSeries:
         path = self.folder / f"{self.name}_{len(self.frames):06d}.vtu"
         _write_grid(grid, path)
         self.frames.append((float(time), path.name))
-        self._write_collection()
+        self._list_last_frame()
         return path
 
-    def _write_collection(self):
-        """Replace the .pvd file by one that lists all frames."""
-        lines = ['<VTKFile type="Collection" version="1.0">', "<Collection>"]
-        lines += [
-            f'<DataSet timestep="{time!r}" part="0" file={quoteattr(file)}/>'
-            for time, file in self.frames
-        ]
-        lines += ["</Collection>", "</VTKFile>", ""]
-        _replace(self.folder / f"{self.name}.pvd", "\n".join(lines))
+    def _list_last_frame(self):
+        """Add the last frame to the .pvd file, over its closing lines and in one piece.
+
+        Replacing the file would be safe, too, but some file systems wait for the disk then.
+        """
+        time, file = self.frames[-1]
+        line = f'<DataSet timestep="{time!r}" part="0" file={quoteattr(file)}/>\n'
+        collection = self.folder / f"{self.name}.pvd"
+        if len(self.frames) == 1:
+            _replace(collection, PVD_HEAD + line + PVD_FOOT)
+            return
+        with open(collection, "r+b") as stream:
+            stream.seek(-len(PVD_FOOT), os.SEEK_END)
+            stream.write((line + PVD_FOOT).encode())
 
 
 class HistoryWriter:
@@ -140,6 +150,28 @@ class HistoryWriter:
         self._file.flush()
 
 
+def list_series(path):
+    """Times [s] and .vtu files of a .pvd file of VtkSeries: list of (float, Path)."""
+    items = ElementTree.parse(path).iter("DataSet")
+    return [(float(item.get("timestep")), Path(path).parent / item.get("file")) for item in items]
+
+
+def read_frame(path):
+    """Positions (N, 3) [m] and cell data, (M,) by name, of a .vtu file of VtkSeries."""
+    if not Path(path).is_file():
+        raise FileNotFoundError(f"{path}: there is no such file")
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    grid = reader.GetOutput()
+    if not grid.GetNumberOfPoints():
+        raise OSError(f"{path}: could not be read")
+    data = grid.GetCellData()
+    arrays = [data.GetArray(i) for i in range(data.GetNumberOfArrays())]
+    fields = {array.GetName(): vtk_to_numpy(array) for array in arrays}
+    return vtk_to_numpy(grid.GetPoints().GetData()), fields
+
+
 def read_history(path):
     """Columns of a .csv file of HistoryWriter: dict of (S,) float by name."""
     with open(path, newline="") as file:
@@ -171,6 +203,7 @@ def _write_grid(grid, path):
     writer.SetFileName(str(path))
     writer.SetInputData(grid)
     writer.SetCompressorTypeToLZ4()  # a fifth of zlib's time, somewhat larger
+    writer.EncodeAppendedDataOff()  # bytes as they are, not as base64
     if writer.Write() != 1:
         raise OSError(f"{path}: could not be written")
 

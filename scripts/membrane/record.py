@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a running sail leaves behind: rows of measures, shapes, frames for the pictures."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +36,33 @@ UNITS = {
     "buckled_sides": "-",
 }
 
+# Fields of the ParaView series: unit, and meaning on a side and on a triangle where it has one.
+SHAPE_FIELDS = {
+    "side_strain": {
+        "unit": "-",
+        "side": "length over rest length, less 1",
+        "triangle": "mean of its three sides",
+    },
+    "tension": {
+        "unit": "N",
+        "side": "elastic force along the side, positive when taut",
+        "triangle": "mean of its three sides",
+    },
+    "buckled": {
+        "unit": "-",
+        "side": "1 below the critical length, else 0",
+        "triangle": "share of its three sides",
+    },
+    "crease_angle": {
+        "unit": "rad",
+        "side": "between the two triangles: 0 folded face to face, pi flat or no fold line",
+        "triangle": "of its fold line farthest from flat",
+    },
+    "area_strain": {"unit": "-", "triangle": "area over rest area, less 1"},
+    "fold": {"unit": "-", "side": "1 mountain, -1 valley, 0 no fold line"},
+    "kind": {"unit": "-", "side": "0 film, 1 crease, 2 tether"},
+}
+
 
 class Recorder:
     """Writes history.csv and the ParaView series of a run.
@@ -66,18 +94,24 @@ class Recorder:
         self._sides = np.array(membrane.sides)
         self._rest = np.array(membrane.restLengths)
         self._critical = np.array(membrane.criticalLengths)
-        self._kinds = np.array(membrane.sideKinds)
-        self._crease_rows = self._rows_of_creases(np.array(membrane.creases))
+        self._kinds = np.array(membrane.sideKinds, dtype=np.int8)
+        self._crease_rows = self._rows_of(np.array(membrane.creases).reshape(-1, 2))
+        self._signs = np.zeros(len(self._sides), dtype=np.int8)
+        self._signs[self._crease_rows] = membrane.creaseSigns
+        ahead = np.roll(mesh.triangles, -1, axis=1)
+        pairs = np.stack([mesh.triangles, ahead], axis=-1).reshape(-1, 2)
+        self._triangle_sides = self._rows_of(pairs).reshape(-1, 3)
         shapes = Path(folder) / "shapes"
         self._film = VtkSeries(shapes, "film", mesh.triangles)
         self._lines = VtkSeries(shapes, "sides", self._sides)
+        (shapes / "fields.json").write_text(json.dumps(SHAPE_FIELDS, indent=2) + "\n")
         # Of the tips against the spool [rad]: at the first row, where its time is 0, and since.
         self._first_lead, self._phases = None, np.zeros(4)
 
-    def _rows_of_creases(self, creases):
-        """Row in the membrane's sides of each crease (C,)."""
+    def _rows_of(self, pairs):
+        """Rows (n,) in the membrane's sides of pairs (n, 2) of nodes."""
         row = {tuple(pair): i for i, pair in enumerate(self._sides.tolist())}
-        return np.array([row[tuple(sorted(pair))] for pair in creases.tolist()], dtype=int)
+        return np.array([row[tuple(sorted(pair))] for pair in pairs.tolist()], dtype=int)
 
     def history(self, time):
         """Append the measures of the last step, whose forces acted `time` [s] after the release."""
@@ -122,17 +156,30 @@ class Recorder:
         length = np.linalg.norm(x[self._sides[:, 1]] - x[self._sides[:, 0]], axis=1)
         angle = np.full(len(self._sides), np.pi)
         angle[self._crease_rows] = self.sail.forces.creaseAngles(x)
-        side_data = {
-            "force": np.array(self.sail.membrane.tensions(x)),
-            "strain": length / self._rest - 1,
-            "buckled": (length < self._critical).astype(int),
+        fields = {
+            "side_strain": length / self._rest - 1,
+            "tension": np.array(self.sail.membrane.tensions(x)),
+            "buckled": (length < self._critical).astype(np.int8),
             "crease_angle": angle,
-            "kind": self._kinds,
         }
-        self._film.write(time, x, {"area_strain": measures.area_strain(self.mesh, x)})
-        self._lines.write(time, x, side_data)
+        lines = {**fields, "fold": self._signs, "kind": self._kinds}
+        self._film.write(time, x, _single_precision(self._of_triangles(x, fields)))
+        self._lines.write(time, x, _single_precision(lines))
         self.frames.append(x)
         self.frame_times.append(time)
+
+    def _of_triangles(self, x, fields):
+        """Fields (T,) of the triangles from those of the sides (E,): see SHAPE_FIELDS."""
+        three = {name: values[self._triangle_sides] for name, values in fields.items()}
+        angles = three["crease_angle"]
+        most = np.argmax(np.abs(angles - np.pi), axis=1)
+        return {
+            "area_strain": measures.area_strain(self.mesh, x),
+            "side_strain": three["side_strain"].mean(axis=1),
+            "tension": three["tension"].mean(axis=1),
+            "buckled": three["buckled"].mean(axis=1),
+            "crease_angle": angles[np.arange(len(angles)), most],
+        }
 
     def columns(self):
         """The rows as arrays (S,) by name."""
@@ -141,3 +188,11 @@ class Recorder:
     def close(self):
         """Close history.csv."""
         self._history.close()
+
+
+def _single_precision(fields):
+    """The fields, those of double precision rounded to single: enough to look at, half the file."""
+    return {
+        name: values.astype(np.float32) if values.dtype == float else values
+        for name, values in fields.items()
+    }

@@ -4,6 +4,7 @@
 import json
 import os
 import platform
+import sys
 import time
 from dataclasses import asdict
 from pathlib import Path
@@ -12,9 +13,9 @@ import numpy as np
 import yade.config
 from yade import wrapper as yade_classes
 
-from . import __version__, measures, plots, scene
+from . import __version__, measures, plots, report, scene
 from .fold import fold, fold_report
-from .mesh import sail_mesh
+from .mesh import mesh_of
 from .progress import Progress
 from .record import Recorder
 from .spool import add_spool
@@ -37,9 +38,7 @@ def build(p):
     sail : MembraneScene
         With guide nodes and tether ends held.
     """
-    mesh = sail_mesh(
-        p.outer_width, p.inner_width, p.fold_lines, p.refine, p.spool_radius, p.tether_segments
-    )
+    mesh = mesh_of(p)
     masses = np.zeros(len(mesh.nodes))
     masses[mesh.tips] = p.tip_mass
     membrane = scene.add_membrane(
@@ -122,7 +121,7 @@ def run(mesh, sail, p, recorder):
         progress.update(now, f"  rate {measured['deployment_rate']:.3f}")
 
 
-def deploy(p, folder, pictures=True):
+def deploy(p, folder, pictures=True, page=True):
     """Do it all and write the results into `folder`.
 
     Parameters
@@ -132,6 +131,8 @@ def deploy(p, folder, pictures=True):
         Made if missing.
     pictures : bool
         Draw deployment.png and shapes.png.
+    page : bool
+        Write report.html; where the viewer is not built, say so and go on.
 
     Returns
     -------
@@ -143,7 +144,7 @@ def deploy(p, folder, pictures=True):
     clock = [time.monotonic()]
     mesh, sail = build(p)
     folded = sail.positions()
-    report = asdict(fold_report(mesh, folded))
+    folding = asdict(fold_report(mesh, folded))
     critical = sail.forces.criticalTimeStep()
     if p.dt > critical and not p.force_time_step:
         raise ValueError(
@@ -179,7 +180,7 @@ def deploy(p, folder, pictures=True):
             "creases": len(mesh.creases),
             "film_mass": p.density * p.thickness * sail.membrane.area,
         },
-        "fold": report,
+        "fold": folding,
         "critical_time_step": critical,
         "spin_up": equilibrium,
         "wall_time": {**wall, "per_step": wall["run"] / max(1, steps)},
@@ -198,7 +199,18 @@ def deploy(p, folder, pictures=True):
         },
     }
     write_json(folder / "summary.json", summary)
+    if page:
+        write_page(folder)
     return summary
+
+
+def write_page(folder):
+    """Write report.html, or remove an earlier run's and tell why there is none."""
+    (folder / report.PAGE).unlink(missing_ok=True)
+    try:
+        report.write_report(folder)
+    except report.NoViewer as error:
+        print(f"no {report.PAGE}: {error}", file=sys.stderr)
 
 
 def save_last_good(sail, folder):

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Renders sail.mp4 and sail.gif from the shapes of runs: `scripts/run.sh animate FOLDER ...`."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from membrane import animation
+
+
+def main():
+    """Do it for each folder; sys.exit with one sentence if that cannot be."""
+    parser = argparse.ArgumentParser(prog="animate", description=__doc__)
+    parser.add_argument("folders", nargs="+", type=Path, metavar="FOLDER", help="output of deploy")
+    for folder in parser.parse_args().folders:
+        try:
+            made = animation.animate(folder)
+        except (OSError, RuntimeError, ValueError) as error:
+            sys.exit(f"animate: {error}")
+        for path in made:
+            print(path)
+
+
+main()

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Writes report.html from the other results of runs: `scripts/run.sh report FOLDER ...`."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from membrane import report
+
+
+def main():
+    """Do it for each folder; sys.exit with one sentence if that cannot be."""
+    parser = argparse.ArgumentParser(prog="report", description=__doc__)
+    parser.add_argument("folders", nargs="+", type=Path, metavar="FOLDER", help="output of deploy")
+    for folder in parser.parse_args().folders:
+        try:
+            made = [report.write_report(folder)]
+        except (OSError, RuntimeError, ValueError) as error:
+            sys.exit(f"report: {error}")
+        for path in made:
+            print(path)
+
+
+main()

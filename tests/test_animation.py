@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The animation: pictures rendered off-screen, and the films made of them."""
+
+import contextlib
+import json
+import os
+import shutil
+import subprocess
+import unittest
+from unittest import mock
+
+import numpy as np
+from membrane import animation
+from membrane.output import list_series
+from membrane.parameters import SailParameters
+from support import ROOT, run_yade, scratch, short_run
+
+MISSING = [program for program in ("Xvfb", "ffmpeg") if not shutil.which(program)]
+
+
+def probe(path):
+    """What ffprobe says of a film's pictures."""
+    done = subprocess.run(
+        ["ffprobe", "-v", "error", "-count_frames", "-of", "json", "-show_streams", str(path)],
+        capture_output=True,
+        check=True,
+    )
+    (stream,) = json.loads(done.stdout)["streams"]
+    return stream
+
+
+def film(image):
+    """Share of a picture (height, width, 3) that shows the film's upper side."""
+    red, green, blue = np.moveaxis(image.astype(int), -1, 0)
+    return np.mean((red > blue + 40) & (green > blue))
+
+
+@unittest.skipIf(MISSING, f"needs {' and '.join(MISSING)}")
+class TestPictures(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        shapes = list_series(short_run() / "shapes" / "film.pvd")
+        cls.addClassCleanup(mock.patch.stopall)
+        mock.patch.object(animation, "SIZE", (640, 360)).start()
+        with animation.virtual_display():
+            with contextlib.closing(animation.Stage(SailParameters(), shapes)) as stage:
+                cls.first, cls.again, cls.last = (stage.picture(i) for i in (0, 0, 20))
+                camera = stage.renderer.GetActiveCamera()
+                cls.pixels_per_metre = 360 / (2 * camera.GetParallelScale())
+
+    def test_sail_opens_and_is_shaded(self):
+        self.assertEqual(self.first.shape, (360, 640, 3))
+        self.assertGreater(film(self.first), 0.005)
+        self.assertGreater(film(self.last), 3 * film(self.first))
+        self.assertGreater(len(np.unique(self.last.reshape(-1, 3), axis=0)), 100)
+
+    def test_same_shape_gives_the_same_picture(self):
+        np.testing.assert_array_equal(self.first, self.again)
+
+    def test_scale_bar_is_as_long_as_it_says(self):
+        corner = self.first[320:345, :200].max(axis=2) < 90
+        bar = np.flatnonzero(corner.sum(axis=1) == corner.sum(axis=1).max())
+        length = corner[bar[0]].sum() / self.pixels_per_metre
+        self.assertAlmostEqual(length, 0.1, delta=2.5 / self.pixels_per_metre)
+
+    def test_time_is_written_and_changes(self):
+        clocks = [image[:50, :200].max(axis=2) < 120 for image in (self.first, self.last)]
+        self.assertGreater(clocks[0].sum(), 50)
+        self.assertGreater(np.sum(clocks[0] != clocks[1]), 20)
+
+
+@unittest.skipIf(MISSING, f"needs {' and '.join(MISSING)}")
+class TestFilms(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.before = os.environ.get("DISPLAY")
+        cls.made = animation.animate(short_run())
+
+    def test_mp4_plays_everywhere_and_has_a_picture_for_each_shape(self):
+        stream = probe(self.made[0])
+        self.assertEqual(stream["codec_name"], "h264")
+        self.assertEqual(stream["pix_fmt"], "yuv420p")
+        self.assertEqual((stream["width"], stream["height"]), animation.SIZE)
+        self.assertEqual(stream["nb_read_frames"], "21")
+        self.assertEqual(stream["r_frame_rate"], "25/1")
+
+    def test_gif_is_small_and_takes_as_long(self):
+        mp4, gif = (probe(path) for path in self.made)
+        self.assertEqual(gif["codec_name"], "gif")
+        self.assertLess(self.made[1].stat().st_size, 3e6)
+        self.assertAlmostEqual(float(gif["duration"]), float(mp4["duration"]), delta=0.05)
+
+    def test_display_is_given_back(self):
+        self.assertEqual(os.environ.get("DISPLAY"), self.before)
+
+    def test_long_films_become_gifs_of_fewer_and_smaller_pictures(self):
+        gif = scratch() / "small.gif"
+        limits = {"GIF_LARGEST": 30e3, "GIF_PICTURES": 8}
+        with mock.patch.multiple(animation, **limits):
+            animation._write_gif(self.made[0], gif, 21)
+        stream = probe(gif)
+        self.assertEqual(stream["nb_read_frames"], "7")
+        self.assertLess(stream["width"], animation.GIF_WIDTHS[0])
+        self.assertAlmostEqual(float(stream["duration"]), 21 / 25, delta=0.1)
+
+
+class TestWithoutTools(unittest.TestCase):
+    def test_missing_program_is_named_with_its_package(self):
+        with mock.patch.object(animation.shutil, "which", return_value=None):
+            with self.assertRaisesRegex(RuntimeError, "Xvfb .apt-get install xvfb"):
+                animation.animate(scratch())
+
+
+class TestCommand(unittest.TestCase):
+    def test_folder_without_a_run_ends_with_one_sentence(self):
+        done = run_yade(ROOT / "scripts" / "animate.py", scratch() / "nowhere")
+        self.assertNotIn(done.returncode, (0, None))
+        self.assertRegex(done.stderr, "(?m)^animate: .*(summary.json|viewer|Xvfb)")
+        self.assertNotIn("Traceback", done.stdout + done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

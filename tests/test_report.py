@@ -1,0 +1,342 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""report.html: what it holds of a run, and how it behaves in a browser without a screen."""
+
+import base64
+import io
+import json
+import re
+import shutil
+import time
+import unittest
+from unittest import mock
+
+import numpy as np
+from matplotlib.image import imread
+from membrane import report, sail
+from membrane.geometry import crease_angles
+from membrane.mesh import sail_mesh
+from membrane.output import list_series, read_frame, read_history
+from membrane.parameters import SailParameters
+from support import ROOT, run_yade, scratch, short_run
+
+try:
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.common.keys import Keys
+    from selenium.webdriver.support.ui import Select, WebDriverWait
+except ImportError:
+    webdriver = None
+
+BROWSER, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
+PATIENCE = 60  # with a browser that draws in software, on a machine that does other things [s]
+SWITCHES = (
+    "--headless=new",
+    "--no-sandbox",  # it does not start as root otherwise
+    "--disable-dev-shm-usage",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+)
+
+
+def unpacked(text, kind):
+    """Array from the page's base64."""
+    return np.frombuffer(base64.b64decode(text), dtype=kind)
+
+
+class TestReportData(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.data = report.run_data(short_run())
+        cls.shapes = list_series(short_run() / "shapes" / "film.pvd")
+        cls.mesh = sail_mesh()
+
+    def levels(self, packed):
+        values = unpacked(packed["data"], "u1").reshape(len(self.shapes), -1)
+        return packed["low"] + (packed["high"] - packed["low"]) * values / 255
+
+    def test_positions_are_those_of_the_shapes_within_ten_micrometres(self):
+        self.assertEqual(self.data["times"], [time for time, _ in self.shapes])
+        packed = self.data["positions"]
+        held = packed["unit"] * unpacked(packed["data"], "<i2").reshape(21, -1, 3)
+        true = np.array([read_frame(path)[0] for _, path in self.shapes])
+        self.assertGreater(np.ptp(true), 0.3)
+        self.assertLess(np.abs(held - true).max(), 1e-5)
+
+    def test_fields_are_those_of_the_shapes_within_half_a_level(self):
+        factors = {"side_strain": 1e6, "tension": 1e3, "buckled": 100, "crease_angle": 180 / np.pi}
+        self.assertEqual([field["name"] for field in self.data["fields"]], list(factors))
+        for field in self.data["fields"]:
+            name, low, high = field["name"], field["low"], field["high"]
+            true = np.array([read_frame(path)[1][name] for _, path in self.shapes])
+            true = np.clip(factors[name] * true.astype(float), low, high)
+            held = self.levels(field)
+            self.assertGreater(np.ptp(held), 0.5 * (high - low), name)
+            self.assertLess(np.abs(held - true).max(), 0.501 * (high - low) / 255, name)
+
+    def test_fold_lines_come_with_their_signs_and_angles(self):
+        mesh = self.mesh
+        np.testing.assert_array_equal(
+            unpacked(self.data["creases"], "<u4").reshape(-1, 2), mesh.creases
+        )
+        self.assertEqual(self.data["creaseSigns"], mesh.crease_signs.tolist())
+        last, _ = read_frame(self.shapes[-1][1])
+        true = np.degrees(crease_angles(last, mesh.triangles, mesh.creases, mesh.crease_signs))
+        held = self.levels(self.data["creaseAngles"])[-1]
+        self.assertGreater(np.ptp(held), 90)
+        self.assertLess(np.abs(held - np.clip(true, 0, 180)).max(), 0.4)
+
+    def test_curves_are_the_history(self):
+        history = read_history(short_run() / "history.csv")
+        rate, phase, _ = self.data["curves"]
+        np.testing.assert_allclose(self.data["historyTimes"], history["time"], rtol=1e-5)
+        held = rate["lines"][0]["values"]
+        np.testing.assert_allclose(held, history["deployment_rate"], rtol=1e-5)
+        held = np.radians(phase["lines"][0]["values"])
+        self.assertGreater(np.ptp(held), 0.1)
+        np.testing.assert_allclose(held, history["phase_difference"], rtol=1e-5)
+
+    def test_table_of_parameters_names_all_and_marks_what_is_not_the_default(self):
+        _, parameters = self.data["tables"]
+        rows = {row[0]: row for row in parameters["rows"]}
+        self.assertEqual(list(rows), list(SailParameters().as_dict()))
+        self.assertEqual(rows["duration"][1:3], ["0.1 (default 1)", "s"])
+        self.assertEqual(rows["omega"][1:3], ["18.8496", "rad/s"])
+
+    def test_large_runs_keep_evenly_spaced_shapes_up_to_the_last(self):
+        self.assertEqual(report.thinned(list(range(21)), 100, largest=2100), list(range(21)))
+        self.assertEqual(report.thinned(list(range(21)), 100, largest=2000), list(range(0, 21, 2)))
+        self.assertEqual(
+            report.thinned(list(range(20)), 100, largest=700), [1, 4, 7, 10, 13, 16, 19]
+        )
+        self.assertEqual(report.thinned(list(range(21)), 100, largest=1), [9, 20])
+
+
+class TestReportWithoutViewer(unittest.TestCase):
+    def test_deployment_goes_on_says_why_and_leaves_no_older_page(self):
+        folder = scratch() / "no_viewer"
+        folder.mkdir()
+        (folder / "report.html").write_text("of an earlier run")
+        said = io.StringIO()
+        with mock.patch.object(report, "TEMPLATE", folder / "absent.html"):
+            with mock.patch("sys.stderr", said):
+                sail.write_page(folder)
+        self.assertRegex(said.getvalue(), "no report.html: .*scripts/run.sh viewer")
+        self.assertFalse((folder / "report.html").exists())
+
+
+@unittest.skipUnless(webdriver and BROWSER and DRIVER, "needs chromium, chromium-driver, selenium")
+@unittest.skipUnless(report.TEMPLATE.is_file(), "the viewer is not built: scripts/run.sh viewer")
+class TestReportInBrowser(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.page = report.write_report(short_run())
+        options = webdriver.ChromeOptions()
+        options.binary_location = BROWSER
+        for switch in SWITCHES:
+            options.add_argument(switch)
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+        cls.driver = webdriver.Chrome(options=options, service=Service(DRIVER))
+        cls.addClassCleanup(cls.driver.quit)
+
+    def setUp(self):
+        self.resize(1280, 800)
+        self.driver.get(self.page.as_uri())
+        self.await_(lambda: self.clock() == 0.0)
+
+    def resize(self, width, height):
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500}
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+
+    def find(self, id_):
+        return self.driver.find_element(By.ID, id_)
+
+    def await_(self, happens):
+        WebDriverWait(self.driver, PATIENCE, poll_frequency=0.1).until(lambda _: happens())
+
+    def clock(self):
+        """The time shown [s]."""
+        shown = re.fullmatch(r"t = (\d+\.\d+) s", self.find("clock").text)
+        return float(shown[1]) if shown else None
+
+    def picture(self):
+        """The sail as drawn, without what lies over its edges: (height, width, 3), 0 to 1."""
+        self.driver.execute_async_script(
+            "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(done));"
+        )
+        image = imread(io.BytesIO(self.find("scene").screenshot_as_png), format="png")[..., :3]
+        return image[60:-60]
+
+    def golden(self, image):
+        """Share of the picture that shows the film."""
+        red, _, blue = np.moveaxis(image, -1, 0)
+        return np.mean(red > blue + 0.2)
+
+    def changed(self, before, after):
+        """Share of the pixels that differ."""
+        self.assertEqual(before.shape, after.shape)
+        return np.mean(np.abs(before - after).max(axis=2) > 0.05)
+
+    def cursors(self):
+        """Where the plots' cursors stand [pixels]."""
+        lines = self.driver.find_elements(By.CSS_SELECTOR, ".plot .cursor")
+        return [float(line.get_attribute("x1")) for line in lines]
+
+    def test_it_loads_without_an_error_and_without_the_network(self):
+        self.driver.get_log("browser"), self.driver.get_log("performance")
+        self.driver.get(self.page.as_uri())
+        self.await_(lambda: self.clock() == 0.0)
+        self.assertGreater(self.golden(self.picture()), 0)
+        bad = [entry for entry in self.driver.get_log("browser") if entry["level"] != "INFO"]
+        self.assertEqual(bad, [])
+        messages = [json.loads(entry["message"]) for entry in self.driver.get_log("performance")]
+        asked = [
+            message["message"]["params"]["request"]["url"]
+            for message in messages
+            if message["message"]["method"] == "Network.requestWillBeSent"
+        ]
+        self.assertEqual(asked, [self.page.as_uri()])
+
+    def test_error_in_a_page_would_be_seen(self):
+        self.driver.get_log("browser")
+        self.driver.execute_script("setTimeout(() => { throw new Error('on purpose'); });")
+        self.await_(lambda: any(e["level"] == "SEVERE" for e in self.driver.get_log("browser")))
+
+    def test_canvas_shows_the_shaded_sail(self):
+        image = self.picture()
+        self.assertGreater(self.golden(image), 0.01)
+        self.assertLess(self.golden(image), 0.5)
+        shades = np.unique((image[image[..., 0] > image[..., 2] + 0.2] * 255).astype(int), axis=0)
+        self.assertGreater(len(shades), 10)
+
+    def test_dragging_turns_the_sail_and_reset_turns_it_back(self):
+        before = self.picture()
+        self.assertEqual(self.changed(before, self.picture()), 0)
+        drag = ActionChains(self.driver, duration=50).move_to_element(self.find("scene"))
+        drag.click_and_hold().move_by_offset(80, 30).move_by_offset(80, 30).release().perform()
+        turned = self.picture()
+        self.assertGreater(self.changed(before, turned), 0.02)
+        self.assertGreater(self.golden(turned), 0.01)
+        self.find("reset").click()
+        self.assertLess(self.changed(before, self.picture()), 0.001)
+
+    def test_slider_changes_time_and_shape(self):
+        folded, start = self.picture(), self.cursors()
+        slider = self.find("slider")
+        slider.send_keys(Keys.ARROW_RIGHT)
+        self.assertEqual(self.clock(), 0.005)
+        slider.send_keys(Keys.END)
+        self.assertEqual(self.clock(), 0.1)
+        opened = self.picture()
+        self.assertGreater(self.golden(opened), 2 * self.golden(folded))
+        self.assertGreater(self.cursors()[0], start[0] + 100)
+
+    def test_moving_along_each_curve_moves_the_sail(self):
+        shapes = [self.picture()]
+        svgs = self.driver.find_elements(By.CSS_SELECTOR, ".plot svg")
+        self.assertEqual(len(svgs), 3)
+        for svg in svgs:
+            times = []
+            for share in (-0.2, 0.2, 0.47):  # of the width, from the middle
+                aside = round(share * svg.rect["width"])
+                ActionChains(self.driver, duration=20).move_to_element_with_offset(
+                    svg, aside, 0
+                ).perform()
+                times.append(self.clock())
+                pointed = svg.rect["width"] / 2 + aside
+                # Within half a shape's interval of the pointer, which is 10 pixels here.
+                np.testing.assert_allclose(self.cursors(), pointed, atol=12)
+            self.assertTrue(0 < times[0] < times[1] < times[2] == 0.1, times)
+            shapes.append(self.picture())
+            ActionChains(self.driver, duration=20).move_to_element_with_offset(
+                svg, -round(0.3 * svg.rect["width"]), 0
+            ).perform()
+        self.assertGreater(self.changed(shapes[0], shapes[1]), 0.05)
+        self.assertEqual(self.changed(shapes[1], shapes[2]), 0)
+
+    def test_readings_beside_the_curves_are_those_of_the_history(self):
+        history = read_history(short_run() / "history.csv")
+        self.find("slider").send_keys(Keys.END)
+        first = self.driver.find_element(By.CSS_SELECTOR, ".plot figcaption i")
+        self.assertAlmostEqual(float(first.text), history["deployment_rate"][-1], delta=6e-4)
+
+    def test_play_button_plays_to_the_end_and_then_again(self):
+        Select(self.find("speed")).select_by_visible_text("1/4")
+        before = self.picture()
+        for _ in range(2):
+            start = self.driver.execute_script(
+                "document.getElementById('play').click();"
+                "return document.getElementById('clock').textContent;"
+            )
+            self.assertEqual(start, "t = 0.000 s")
+            self.await_(lambda: self.clock() == 0.1)
+            self.await_(lambda: self.find("play").get_attribute("aria-label") == "Play")
+        self.assertGreater(self.changed(before, self.picture()), 0.05)
+
+    def test_it_stops_where_it_is_paused(self):
+        Select(self.find("speed")).select_by_visible_text("1/32")
+        self.find("play").click()
+        self.assertEqual(self.find("play").get_attribute("aria-label"), "Pause")
+        self.await_(lambda: self.clock() > 0)
+        self.find("play").click()
+        paused = self.clock()
+        self.assertLess(paused, 0.1)
+        time.sleep(0.4)  # 2.5 shapes
+        self.assertEqual(self.clock(), paused)
+
+    def test_keys_play_and_step(self):
+        body = self.driver.find_element(By.TAG_NAME, "body")
+        body.send_keys(Keys.ARROW_RIGHT, Keys.ARROW_RIGHT)
+        self.assertEqual(self.clock(), 0.01)
+        body.send_keys(Keys.ARROW_LEFT)
+        self.assertEqual(self.clock(), 0.005)
+        body.send_keys(Keys.END)
+        self.assertEqual(self.clock(), 0.1)
+        body.send_keys(Keys.HOME)
+        self.assertEqual(self.clock(), 0.0)
+        body.send_keys(Keys.SPACE)
+        self.await_(lambda: self.clock() > 0)
+
+    def test_colouring_by_each_field_shows_its_scale(self):
+        self.find("slider").send_keys(Keys.END)
+        seen = [self.picture()]
+        for label in ("side strain", "tension", "buckled sides", "crease angle"):
+            Select(self.find("field")).select_by_visible_text(label)
+            self.assertIn(label, self.find("legend").text)
+            seen.append(self.picture())
+            for other in seen[:-1]:
+                self.assertGreater(self.changed(other, seen[-1]), 0.05, label)
+        Select(self.find("field")).select_by_index(0)
+        self.assertFalse(self.find("legend").is_displayed())
+        self.assertEqual(self.changed(seen[0], self.picture()), 0)
+
+    def test_turning_with_the_spool_is_another_view_once_it_has_turned(self):
+        start = self.picture()
+        self.find("corotate").click()
+        self.assertEqual(self.changed(start, self.picture()), 0)
+        self.find("slider").send_keys(Keys.END)
+        along = self.picture()
+        self.find("corotate").click()
+        self.assertGreater(self.changed(along, self.picture()), 0.02)
+
+    def test_nothing_sticks_out_at_any_width(self):
+        for width, height in ((1280, 800), (800, 600), (390, 844)):
+            self.resize(width, height)
+            self.await_(lambda: self.find("scene").rect["width"] <= width)
+            wide = self.driver.execute_script("return document.documentElement.scrollWidth")
+            self.assertLessEqual(wide, width)
+            self.assertGreater(self.golden(self.picture()), 0.005, width)
+
+
+class TestCommand(unittest.TestCase):
+    def test_folder_without_a_run_ends_with_one_sentence(self):
+        done = run_yade(ROOT / "scripts" / "report.py", scratch() / "nowhere")
+        self.assertNotIn(done.returncode, (0, None))
+        self.assertRegex(done.stderr, "(?m)^report: .*(summary.json|viewer|Xvfb)")
+        self.assertNotIn("Traceback", done.stdout + done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
