@@ -242,9 +242,7 @@ class _FrameReader:
             # The objects live as long as the file is read, so that their ids stay theirs.
             key = (name, id(raw[name]), *about)
             if key not in self._converted:
-                self._converted[key] = convert(
-                    self.path, _place(number, name), raw[name], *about
-                )
+                self._converted[key] = convert(self.path, _place(number, name), raw[name], *about)
             return self._converted[key]
 
         coords = get("vertices_coords", _coords)

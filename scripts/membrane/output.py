@@ -211,4 +211,3 @@ def _finite(name, values):
     if not np.all(np.isfinite(values)):
         raise ValueError(f"{name}: has values that are not finite")
     return values
-
