@@ -461,6 +461,34 @@ def fold_by_angles(pattern):
     return _agreed(pattern, found, "the fold angles do not go together")
 
 
+def fold_angles_of(pattern, places, pairs):
+    """Fold angles (E,) [deg] of the edges in a folded form, positive valley, 0 on the border.
+
+    Parameters
+    ----------
+    pattern : CreasePattern
+    places : (V, 3) float
+        Vertices of the folded form [m].
+    pairs : (E, 2) int
+        What `face_pairs` gives.
+    """
+    normals = np.array([_normal(places[face]) for face in pattern.faces])
+    a, b = pattern.edges.T
+    along = places[b] - places[a]
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    left, right = normals[pairs[:, 0]], normals[pairs[:, 1]]
+    # A valley lifts the right face: it turns about a -> b the other way than a screw.
+    sine = -np.sum(along * np.cross(left, right), axis=1)
+    angles = np.degrees(np.arctan2(sine, np.sum(left * right, axis=1)))
+    return np.where(np.all(pairs >= 0, axis=1), angles, 0.0)
+
+
+def _normal(loop):
+    """Unit normal (3,) of a polygon (n, 3), as flat as may be (Newell's method)."""
+    normal = np.cross(loop, np.roll(loop, -1, axis=0)).sum(axis=0)
+    return normal / (np.linalg.norm(normal) or 1.0)
+
+
 def _unrolled(pattern):
     """Flat vertices (V, 3) [m] of a pattern whose `vertices` are those of a folded form."""
     if not pattern.faces:
@@ -480,9 +508,7 @@ def _unrolled(pattern):
 def _laid_flat(pattern, face):
     """Corners of a face in its own plane, as complex numbers [m]."""
     corners = pattern.vertices[_vertices_of(pattern, face)]
-    loop = pattern.vertices[pattern.faces[face]]
-    normal = np.cross(loop, np.roll(loop, -1, axis=0)).sum(axis=0)
-    normal /= np.linalg.norm(normal) or 1.0
+    normal = _normal(pattern.vertices[pattern.faces[face]])
     away = (corners - corners[0]) @ normal
     if np.max(np.abs(away)) > STRETCH * pattern.size:
         raise ValueError(f"face {face} of the folded form is not flat")
