@@ -414,8 +414,12 @@ def write_fold(path, content):
     """
     key_frame = content.frames[0]
     top = {"file_spec": SPEC, **content.texts, "file_classes": list(content.classes)}
-    top |= _as_dict(path, 0, key_frame)
-    children = [_child(path, i, key_frame, frame) for i, frame in enumerate(content.frames)][1:]
+    first = _as_dict(path, 0, key_frame)
+    top |= first
+    children = [
+        _child(_as_dict(path, i, frame), frame, first, key_frame)
+        for i, frame in enumerate(content.frames[1:], start=1)
+    ]
     if children:
         top["file_frames"] = children
     text = json.dumps(top, allow_nan=False, default=lambda array: array.tolist())
@@ -447,19 +451,18 @@ def _as_dict(path, number, frame):
     return found | frame.custom
 
 
-def _child(path, number, key_frame, frame):
-    """A later frame as an object of JSON, without what it has in common with the key frame."""
-    shared = {
-        key: None
-        for key, name in (
-            ("vertices_coords", "coords"),
-            ("edges_vertices", "edges"),
-            ("edges_assignment", "letters"),
-            ("edges_foldAngle", "angles"),
-            ("faces_vertices", "faces"),
-        )
-        if getattr(frame, name) is getattr(key_frame, name)
+def _child(found, frame, first, key_frame):
+    """A later frame as an object of JSON (`found`), without what it shares with the key frame."""
+    if not found.keys() >= first.keys():
+        return found  # it would inherit what it does not have
+    names = {
+        "vertices_coords": "coords",
+        "edges_vertices": "edges",
+        "edges_assignment": "letters",
+        "edges_foldAngle": "angles",
+        "faces_vertices": "faces",
     }
-    found = _as_dict(path, number, frame)
+    shared = {k for k, name in names.items() if getattr(frame, name) is getattr(key_frame, name)}
+    shared |= {k for k, value in frame.custom.items() if value is key_frame.custom.get(k)}
     own = {key: value for key, value in found.items() if key not in shared}
     return {"frame_parent": 0, "frame_inherit": True, **own}

@@ -294,7 +294,7 @@ class PatternRecorder(Recorder):
         }
 
 
-def fly(sheet, p, folder, pictures=True):
+def fly(sheet, p, folder, pictures=True, shown=None):
     """Run a sheet as a spinning sail and write the results into `folder`.
 
     Parameters
@@ -305,6 +305,8 @@ def fly(sheet, p, folder, pictures=True):
         Made if missing.
     pictures : bool
         Draw shapes.png and history.png.
+    shown : sequence of float, optional
+        Up to six times [s] to show in shapes.png; default: up to the fullest deployment.
 
     Returns
     -------
@@ -338,7 +340,7 @@ def fly(sheet, p, folder, pictures=True):
     history = recorder.columns()
     export(sail, recorder, made, p, folder / "sail.fold")
     if pictures:
-        draw(sail, recorder, history, folder)
+        draw(sail, recorder, history, folder, shown)
     momentum = history["angular_momentum"] - history["angular_impulse"]
     summary = {
         "parameters": asdict(p),
@@ -384,8 +386,8 @@ class _Steps:
         return getattr(self.parameters, name)
 
 
-def draw(sail, recorder, history, folder):
-    """Write history.png, and shapes.png with six instants up to the fullest deployment."""
+def draw(sail, recorder, history, folder, shown=None):
+    """Write history.png, and shapes.png with the shapes nearest to the times `shown` [s]."""
     columns = {
         "projected_area": "projected area\nover flat area [-]",
         "tip_radius": "radius of the tips [m]",
@@ -394,8 +396,11 @@ def draw(sail, recorder, history, folder):
     }
     plots.plot_history(history, columns, folder / "history.png")
     times = np.array(recorder.frame_times)
-    areas = [area_vectors(x, sail.triangles)[:, 2].sum() for x in recorder.frames]
-    picks = instants(times, int(np.argmax(areas)))
+    if shown is None:
+        areas = [area_vectors(x, sail.triangles)[:, 2].sum() for x in recorder.frames]
+        picks = instants(times, int(np.argmax(areas)))
+    else:
+        picks = np.unique([int(np.argmin(np.abs(times - t))) for t in shown])
     frames = [recorder.frames[i] for i in picks]
     plots.plot_sheets(frames, sail.triangles, sail.tips, folder / "shapes.png", times[picks])
 
@@ -447,7 +452,7 @@ def export(sail, recorder, made, p, path):
                 classes=("foldedForm",),
                 attributes=("3D", "joins"),
                 title=f"t = {now:.6g} s",
-                custom={"membrane:time": now},
+                custom={**key_frame.custom, "membrane:time": now},
                 **{**shared, "letters": letters if same else letters_now},
             )
         )

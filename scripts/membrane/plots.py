@@ -104,7 +104,7 @@ def plot_sheets(frames, triangles, marked, path, times):
     def draw(axes, positions, radius):
         _draw_faces(axes, positions[triangles])
         _draw_dots(axes, positions[marked])
-        _set_view(axes, radius)
+        _set_view(axes, radius, zoom=1.6)
 
     _plot_views(frames, times, path, draw)
 
