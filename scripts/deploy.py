@@ -12,7 +12,7 @@ from dataclasses import fields
 from pathlib import Path
 
 from membrane import sail
-from membrane.parameters import SailParameters, add_arguments, from_arguments
+from membrane.parameters import SailParameters, from_arguments, parse
 from yade import utils
 from yade.wrapper import Omega
 
@@ -26,8 +26,7 @@ def command_line():
         "--out", type=Path, metavar="DIR", help="output folder (default: out, in a batch out/CASE)"
     )
     parser.add_argument("--no-pictures", action="store_true", help="draw no pictures")
-    add_arguments(parser)
-    return parser.parse_args()
+    return parse(parser)
 
 
 def batch_row():
@@ -43,10 +42,10 @@ def batch_row():
 
 def main():
     """Deploy the sail; sys.exit with one sentence if that cannot be."""
-    arguments = command_line()
-    overrides, case = batch_row()
-    folder = arguments.out or (Path("out") / case.replace("/", "_") if case else Path("out"))
     try:
+        arguments = command_line()
+        overrides, case = batch_row()
+        folder = arguments.out or (Path("out") / case.replace("/", "_") if case else Path("out"))
         parameters = from_arguments(arguments, overrides)
         summary = sail.deploy(parameters, folder, pictures=not arguments.no_pictures)
     except (ValueError, RuntimeError, OSError) as error:

@@ -32,7 +32,9 @@ def parameters(duration):
 def main():
     """Unfold the sheet; sys.exit with one sentence if that cannot be."""
     parser = argparse.ArgumentParser(prog="miura", description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR", help="output folder")
+    parser.add_argument(
+        "--out", type=Path, default=Path("out"), metavar="DIR", help="output folder"
+    )
     parser.add_argument("--duration", type=float, default=1.0, metavar="S", help="default 1 s")
     arguments = parser.parse_args()
     try:

@@ -9,6 +9,9 @@ usage: scripts/run.sh COMMAND [options]
 
   deploy [-j N] [options]   fold, spin up and deploy the sail, on N threads (default 1);
                             options of scripts/deploy.py, listed by `scripts/run.sh deploy --help`
+  sail FILE [options]       spin any sail: a crease pattern (.fold) or a mesh of gmsh (.msh);
+                            options of scripts/sail.py
+  miura [options]           a Miura-ori sheet from a FOLD file, unfolded by tip masses
   test [-j N] [--full] [MODULE ...]
                             run the tests, or those of some modules; --full adds the long ones
   bench [options]           measure the speed beside YADE's own functors and LAMMPS: tables, and
@@ -29,9 +32,10 @@ Each command first installs the Debian packages it lacks. To start YADE by hand:
 END
 }
 
-# Debian packages to build and run, to verify, to compare the speed with, and to format.
+# Debian packages to build and run, to mesh other sails, to verify, to compare the speed with, and to format.
 run_packages=(yade python3-numpy python3-matplotlib python3-vtk9
     g++ cmake make libboost-dev libeigen3-dev python3-dev libgtest-dev)
+sail_packages=(python3-gmsh python3-meshio)
 verify_packages=(calculix-ccx python3-scipy)
 bench_packages=(lammps openmpi-bin)
 format_packages=(clang-format black python3-flake8 shellcheck)
@@ -180,7 +184,13 @@ deploy)
     compile
     run_yade "$root/scripts/deploy.py" "$@"
     ;;
+sail | miura)
+    need "${sail_packages[@]}"
+    compile
+    run_yade "$root/scripts/$command.py" "$@"
+    ;;
 test)
+    need "${sail_packages[@]}"
     compile
     run_tests "$@"
     ;;

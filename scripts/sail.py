@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 from membrane import pattern_sail
-from membrane.parameters import add_arguments, from_arguments
+from membrane.parameters import from_arguments, parse
 from membrane.pattern_sail import PatternParameters
 
 
@@ -23,15 +23,14 @@ def command_line():
         "--out", type=Path, default=Path("out"), metavar="DIR", help="output folder"
     )
     parser.add_argument("--no-pictures", action="store_true", help="draw no pictures")
-    add_arguments(parser, PatternParameters)
-    return parser.parse_args()
+    return parse(parser, PatternParameters)
 
 
 def main():
     """Spin the sail; sys.exit with one sentence if that cannot be."""
-    arguments = command_line()
-    folder, pictures = arguments.out, not arguments.no_pictures
     try:
+        arguments = command_line()
+        folder, pictures = arguments.out, not arguments.no_pictures
         parameters = from_arguments(arguments, kind=PatternParameters)
         sheet = pattern_sail.read_sheet(arguments.file, parameters)
         summary = pattern_sail.fly(sheet, parameters, folder, pictures)

@@ -170,7 +170,7 @@ def _places(top):
 
 @lru_cache(maxsize=None)
 def fold_seeds():
-    """A pattern with its folded form, a patch without faces but with a slit and a chain of frames."""
+    """A pattern with its folded form, a patch without faces, a chain of frames."""
     folder, seeds = scratch() / "fuzz_seeds", []
     folder.mkdir(exist_ok=True)
     square = np.array([(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0.5, 1, 0), (1.5, 1, 0)], float)

@@ -172,6 +172,20 @@ def add_arguments(parser, kind=SailParameters):
                 _add_argument(group, item)
 
 
+def parse(parser, kind=SailParameters):
+    """Arguments of an argparse parser with options for all parameters and one for a file of them.
+
+    What is given on the command line wins over the file. Raises BadFile or OSError.
+    """
+    add_arguments(parser, kind)
+    text = "take parameters that are not given from this JSON file, as summary.json of a run"
+    parser.add_argument("--parameters", metavar="FILE", help=text)
+    file = parser.parse_args().parameters
+    if file:
+        parser.set_defaults(**asdict(read_parameters(file, kind)))
+    return parser.parse_args()
+
+
 def _add_argument(group, item):
     flag, text = "--" + item.name.replace("_", "-"), describe(item).replace("%", "%%")
     if item.type is bool:

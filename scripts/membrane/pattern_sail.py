@@ -391,10 +391,11 @@ def draw(sail, recorder, history, folder, shown=None):
     columns = {
         "projected_area": "projected area\nover flat area [-]",
         "tip_radius": "radius of the tips [m]",
-        "mean_crease_angle": "mean crease\nangle [rad]",
+        "mean_crease_angle": "mean crease\nangle [deg]",
         "spin_rate": "spin rate [rad/s]",
     }
-    plots.plot_history(history, columns, folder / "history.png")
+    degrees = {"mean_crease_angle": np.degrees(history["mean_crease_angle"])}
+    plots.plot_history({**history, **degrees}, columns, folder / "history.png")
     times = np.array(recorder.frame_times)
     if shown is None:
         areas = [area_vectors(x, sail.triangles)[:, 2].sum() for x in recorder.frames]
