@@ -15,6 +15,7 @@ STRETCH = 0.01  # by which edges of a folded form may be longer than the pattern
 SHORTENED = 0.5  # and shorter: film between the ends may have buckled
 GAP = 1e-4  # of the pattern's size: what folding by angles may leave open
 LOOSE = 0.1  # degrees: to which fold angles must fit together
+MOST_EDGES = 100_000  # more would take minutes to check
 SAME_PLACE = 1e-9  # of the pattern's size
 
 
@@ -196,9 +197,9 @@ def _with_faces(pattern):
 def _check_edges(pattern):
     """Refuse edges of no length, edges given twice and edges that cross."""
     vertices, edges = pattern.vertices, pattern.edges
+    if not 0 < len(edges) <= MOST_EDGES:
+        raise ValueError(f"the pattern has {len(edges)} edges; must be 1 to {MOST_EDGES}")
     lengths = np.linalg.norm(np.diff(vertices[edges], axis=1)[:, 0], axis=1)
-    if not len(edges):
-        raise ValueError("the pattern has no edges")
     tiny = SAME_PLACE * pattern.size
     if np.min(lengths) <= tiny:
         raise ValueError(f"edge {int(np.argmin(lengths))} has no length")
@@ -209,20 +210,27 @@ def _check_edges(pattern):
         e = int(first[np.argmax(counts > 1)])
         raise ValueError(f"edge {e} is given {counts.max()} times")
     plane = vertices[:, :2]
-    low, high = plane[edges].min(axis=1), plane[edges].max(axis=1)
-    for e, (a, b) in enumerate(edges):
-        near = np.flatnonzero(np.all((low[e + 1 :] <= high[e]) & (high[e + 1 :] >= low[e]), axis=1))
-        rest = e + 1 + near
+    for e, rest in _near_pairs(plane, edges):
         rest = rest[~np.isin(edges[rest], edges[e]).any(axis=1)]
+        a, b = plane[edges[e]]
         c, d = plane[edges[rest, 0]], plane[edges[rest, 1]]
-        one, other = _side_of(plane[a], plane[b], c), _side_of(plane[a], plane[b], d)
-        two, more = _side_of(c, d, plane[a]), _side_of(c, d, plane[b])
+        one, other = _side_of(a, b, c), _side_of(a, b, d)
+        two, more = _side_of(c, d, a), _side_of(c, d, b)
         cross = (one * other < 0) & (two * more < 0)
         cross &= np.min(np.abs([one, other, two, more]), axis=0, initial=np.inf) > tiny
         if np.any(cross):
-            raise ValueError(
-                f"edges {e} and {rest[np.argmax(cross)]} cross where there is no vertex"
-            )
+            pair = sorted((e, int(rest[np.argmax(cross)])))
+            raise ValueError(f"edges {pair[0]} and {pair[1]} cross where there is no vertex")
+
+
+def _near_pairs(plane, edges):
+    """Yield each edge with those later ones, from left to right, whose boxes touch its own."""
+    low, high = plane[edges].min(axis=1), plane[edges].max(axis=1)
+    order = np.argsort(low[:, 0])
+    starts = low[order, 0]
+    for i, e in enumerate(order):
+        rest = order[i + 1 : np.searchsorted(starts, high[e, 0], side="right")]
+        yield int(e), rest[(low[rest, 1] <= high[e, 1]) & (high[rest, 1] >= low[e, 1])]
 
 
 def _side_of(a, b, points):
@@ -280,10 +288,13 @@ def _check_touching(vertices, edges):
     plane = vertices[:, :2]
     tiny = SAME_PLACE * np.ptp(plane, axis=0).max()
     used = np.unique(edges)
+    used = used[np.argsort(plane[used, 0])]
+    across = plane[used, 0]
     for a, b in edges:
-        others = used[(used != a) & (used != b)]
         low, high = np.minimum(plane[a], plane[b]) - tiny, np.maximum(plane[a], plane[b]) + tiny
-        near = others[np.all((plane[others] >= low) & (plane[others] <= high), axis=1)]
+        near = used[slice(*np.searchsorted(across, (low[0], high[0])))]
+        near = near[(plane[near, 1] >= low[1]) & (plane[near, 1] <= high[1])]
+        near = near[(near != a) & (near != b)]
         on = near[np.abs(_side_of(plane[a], plane[b], plane[near])) <= tiny]
         if len(on):
             raise ValueError(f"vertex {on[0]} lies on the edge from vertex {a} to vertex {b}")
@@ -323,11 +334,12 @@ def _walk(vertices, edges):
 
 def _smallest_around(vertices, loops, outer, areas, i):
     """Number of the smallest outer loop round loop i, or None; they have no vertex in common."""
-    point = vertices[loops[i][0]]
-    around = [
-        j for j in outer if loops[i][0] not in loops[j] and _inside(vertices, loops[j], point)
-    ]
-    return min(around, key=lambda j: areas[j]) if around else None
+    first = loops[i][0]
+    for j in sorted(outer, key=lambda j: areas[j]):
+        if areas[j] > -areas[i] and first not in loops[j]:
+            if _inside(vertices, loops[j], vertices[first]):
+                return j
+    return None
 
 
 def _inside(vertices, loop, point):
