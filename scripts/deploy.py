@@ -12,7 +12,7 @@ from dataclasses import fields
 from pathlib import Path
 
 from membrane import report, sail
-from membrane.parameters import SailParameters, add_arguments, from_arguments
+from membrane.parameters import SailParameters, from_arguments, parse
 from yade import utils
 from yade.wrapper import Omega
 
@@ -30,8 +30,7 @@ def command_line():
     parser.add_argument(
         "--animation", action="store_true", help="also render sail.mp4 and sail.gif (Xvfb, ffmpeg)"
     )
-    add_arguments(parser)
-    return parser.parse_args()
+    return parse(parser)
 
 
 def batch_row():
@@ -47,10 +46,10 @@ def batch_row():
 
 def main():
     """Deploy the sail; sys.exit with one sentence if that cannot be."""
-    arguments = command_line()
-    overrides, case = batch_row()
-    folder = arguments.out or (Path("out") / case.replace("/", "_") if case else Path("out"))
     try:
+        arguments = command_line()
+        overrides, case = batch_row()
+        folder = arguments.out or (Path("out") / case.replace("/", "_") if case else Path("out"))
         parameters = from_arguments(arguments, overrides)
         summary = sail.deploy(
             parameters,

@@ -11,6 +11,9 @@ usage: scripts/run.sh COMMAND [options]
                             options of scripts/deploy.py, listed by `scripts/run.sh deploy --help`
   report FOLDER ...         write report.html again from the other results in an output folder
   animate FOLDER ...        render sail.mp4 and sail.gif from the shapes in an output folder
+  sail FILE [options]       spin any sail: a crease pattern (.fold) or a mesh of gmsh (.msh);
+                            options of scripts/sail.py
+  miura [options]           a Miura-ori sheet from a FOLD file, unfolded by tip masses
   test [-j N] [--full] [MODULE ...]
                             run the tests, or those of some modules; --full adds the long ones
   bench [options]           measure the speed beside YADE's own functors and LAMMPS: tables, and
@@ -32,9 +35,10 @@ Each command first installs the Debian packages it lacks. To start YADE by hand:
 END
 }
 
-# Debian packages to build and run, to verify, to compare the speed with, and to format.
+# Debian packages to build and run, to mesh other sails, to verify, to compare the speed with, and to format.
 run_packages=(yade python3-numpy python3-matplotlib python3-vtk9
     g++ cmake make libboost-dev libeigen3-dev python3-dev libgtest-dev)
+sail_packages=(python3-gmsh python3-meshio)
 verify_packages=(calculix-ccx python3-scipy)
 bench_packages=(lammps openmpi-bin)
 animation_packages=(xvfb libgl1-mesa-dri ffmpeg)
@@ -210,7 +214,13 @@ deploy)
     [[ " $* " != *" --animation "* ]] || need "${animation_packages[@]}"
     run_yade "$root/scripts/deploy.py" "$@"
     ;;
+sail | miura)
+    need "${sail_packages[@]}"
+    compile
+    run_yade "$root/scripts/$command.py" "$@"
+    ;;
 test)
+    need "${sail_packages[@]}"
     compile
     viewer_if_possible
     (need "${animation_packages[@]}" "${browser_packages[@]}") || true # tests say what they lack

@@ -319,6 +319,34 @@ def wind_a_tether(path="law2"):
     return made
 
 
+@lru_cache(maxsize=None)
+def gmsh_sheet(version=4.1, binary=False, size=0.1):
+    """A .msh file of gmsh: a square of 0.4 m with a mountain along x = 0, tips and a hub."""
+    import gmsh
+
+    gmsh.initialize(readConfigFiles=False)
+    gmsh.option.setNumber("General.Terminal", 0)
+    geo, model = gmsh.model.geo, gmsh.model
+    corners = ((-0.2, -0.2), (0.2, -0.2), (0.2, 0.2), (-0.2, 0.2), (0, -0.2), (0, 0.2), (0, 0))
+    p = [geo.addPoint(*place, 0, size) for place in corners]
+    ends = ((0, 4), (4, 1), (1, 2), (2, 5), (5, 3), (3, 0), (4, 6), (6, 5))
+    lines = [geo.addLine(p[a], p[b]) for a, b in ends]
+    left = geo.addCurveLoop([lines[i] for i in (0, 6, 7, 4, 5)])
+    right = geo.addCurveLoop([*(lines[i] for i in (1, 2, 3)), -lines[7], -lines[6]])
+    faces = [geo.addPlaneSurface([loop]) for loop in (left, right)]
+    geo.synchronize()
+    groups = (0, p[:4], "tips"), (0, p[6:], "hub"), (1, lines[6:], "mountain"), (2, faces, "film")
+    for dimension, tags, name in groups:
+        model.setPhysicalName(dimension, model.addPhysicalGroup(dimension, tags), name)
+    model.mesh.generate(2)
+    gmsh.option.setNumber("Mesh.MshFileVersion", version)
+    gmsh.option.setNumber("Mesh.Binary", binary)
+    path = scratch() / f"sheet_{version}_{binary}_{size}.msh"
+    gmsh.write(str(path))
+    gmsh.finalize()
+    return path
+
+
 def yade_environment():
     """Environment variables with which `yade` finds this package."""
     package = str(Path(membrane.__file__).parents[1])

@@ -2,6 +2,7 @@
 """Files of results: ParaView time series of a mesh, and a table of scalars over time."""
 
 import csv
+import io
 import json
 import math
 import os
@@ -14,6 +15,8 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray,
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import VTK_LINE, VTK_TRIANGLE, vtkCellArray, vtkUnstructuredGrid
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
+
+from .files import BadFile, read_text, replace_text, shown
 
 CELL_TYPES = {2: VTK_LINE, 3: VTK_TRIANGLE}
 PVD_HEAD = '<VTKFile type="Collection" version="1.0">\n<Collection>\n'
@@ -91,7 +94,7 @@ class VtkSeries:
         line = f'<DataSet timestep="{time!r}" part="0" file={quoteattr(file)}/>\n'
         collection = self.folder / f"{self.name}.pvd"
         if len(self.frames) == 1:
-            _replace(collection, PVD_HEAD + line + PVD_FOOT)
+            replace_text(collection, PVD_HEAD + line + PVD_FOOT)
             return
         with open(collection, "r+b") as stream:
             stream.seek(-len(PVD_FOOT), os.SEEK_END)
@@ -114,7 +117,7 @@ class HistoryWriter:
     def __init__(self, path, units):
         self.path, self.columns = Path(path), tuple(units)
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        _replace(self.path.with_suffix(".units.json"), json.dumps(units, indent=2) + "\n")
+        replace_text(self.path.with_suffix(".units.json"), json.dumps(units, indent=2) + "\n")
         self._file = open(self.path, "w", newline="")
         self._line(self.columns)
 
@@ -173,11 +176,39 @@ def read_frame(path):
 
 
 def read_history(path):
-    """Columns of a .csv file of HistoryWriter: dict of (S,) float by name."""
-    with open(path, newline="") as file:
-        names, *rows = csv.reader(file)
+    """Columns of a .csv file of HistoryWriter: dict of (S,) float by name.
+
+    Raises
+    ------
+    BadFile
+        If it is no complete table of finite numbers under names that differ.
+    """
+    text = read_text(path)
+    if not text.endswith("\n"):
+        raise BadFile(path, f"line {text.count(chr(10)) + 1}", "is cut off")
+    try:
+        names, *rows = csv.reader(io.StringIO(text, newline=""), strict=True)
+    except csv.Error as error:
+        raise BadFile(path, "", f"is no table: {error}") from None
+    if not all(names) or len(set(names)) < len(names) or any(map(_is_value, names)):
+        raise BadFile(path, "line 1", "must name every column, each otherwise")
+    for number, row in enumerate(rows, start=2):
+        if len(row) != len(names):
+            raise BadFile(path, f"line {number}", f"has {len(row)} values for {len(names)} columns")
+        for name, value in zip(names, row):
+            if not _is_value(value):
+                reason = f"is {shown(value)}; must be a finite number"
+                raise BadFile(path, f"line {number}, {shown(name)[1:-1]}", reason)
     table = np.array(rows, dtype=float).reshape(-1, len(names))
     return {name: table[:, i] for i, name in enumerate(names)}
+
+
+def _is_value(text):
+    """Whether a text is a finite number, written as others than Python write it, too."""
+    try:
+        return "_" not in text and math.isfinite(float(text))
+    except ValueError:
+        return False
 
 
 def _grid(cells, positions):
@@ -214,10 +245,3 @@ def _finite(name, values):
     if not np.all(np.isfinite(values)):
         raise ValueError(f"{name}: has values that are not finite")
     return values
-
-
-def _replace(path, text):
-    """Write a text file so that readers see either the old one or the new one."""
-    part = path.with_name(path.name + ".part")
-    part.write_text(text)
-    os.replace(part, path)

@@ -8,6 +8,9 @@ and the README's table all come from it.
 import argparse
 from dataclasses import asdict, dataclass, field, fields
 from math import inf, pi
+from numbers import Real
+
+from .files import BadFile, read_object, shown
 
 TABLE_1, TABLE_2, ASSUMED, RUN = "Table 1", "Table 2", "assumed", "run"
 
@@ -26,6 +29,9 @@ def _parameter(default, unit, source, text, least=0.0, most=inf, above=False, ch
             "choices": choices,
         },
     )
+
+
+parameter = _parameter  # for other scenes
 
 
 @dataclass(frozen=True)
@@ -110,12 +116,17 @@ class SailParameters:
     force_time_step: bool = _parameter(False, "-", RUN, "run even above the critical time step")
 
     def __post_init__(self):
-        for item in fields(self):
-            _check(item, getattr(self, item.name))
+        check(self)
 
     def as_dict(self):
         """Values by name."""
         return asdict(self)
+
+
+def check(parameters):
+    """Raise ValueError naming the first of some parameters that is out of range."""
+    for item in fields(parameters):
+        _check(item, getattr(parameters, item.name))
 
 
 def _check(item, value):
@@ -124,10 +135,12 @@ def _check(item, value):
     if about["choices"]:
         if value not in about["choices"]:
             raise ValueError(
-                f"{item.name} = {value!r} must be one of {', '.join(about['choices'])}"
+                f"{item.name} = {shown(value)} must be one of {', '.join(about['choices'])}"
             )
         return
-    if item.type is int and value != int(value):
+    if not isinstance(value, Real):
+        raise ValueError(f"{item.name} = {shown(value)} must be a number")
+    if item.type is int and not (abs(value) < inf and value == int(value)):
         raise ValueError(f"{item.name} = {value} must be a whole number")
     low = value > about["least"] if about["above"] else value >= about["least"]
     if not (low and value <= about["most"] and abs(value) < inf):
@@ -150,13 +163,27 @@ def describe(item):
     return f"{about['text']}{unit} ({about['source']}{extent}; default {item.default})"
 
 
-def add_arguments(parser):
+def add_arguments(parser, kind=SailParameters):
     """Add one option for every parameter to an argparse parser, grouped by source."""
-    for source in (TABLE_1, TABLE_2, ASSUMED, RUN):
+    for source in dict.fromkeys(item.metadata["source"] for item in fields(kind)):
         group = parser.add_argument_group(f"parameters: {source}")
-        for item in fields(SailParameters):
+        for item in fields(kind):
             if item.metadata["source"] == source:
                 _add_argument(group, item)
+
+
+def parse(parser, kind=SailParameters):
+    """Arguments of an argparse parser with options for all parameters and one for a file of them.
+
+    What is given on the command line wins over the file. Raises BadFile or OSError.
+    """
+    add_arguments(parser, kind)
+    text = "take parameters that are not given from this JSON file, as summary.json of a run"
+    parser.add_argument("--parameters", metavar="FILE", help=text)
+    file = parser.parse_args().parameters
+    if file:
+        parser.set_defaults(**asdict(read_parameters(file, kind)))
+    return parser.parse_args()
 
 
 def _add_argument(group, item):
@@ -173,12 +200,35 @@ def _add_argument(group, item):
     )
 
 
-def from_arguments(arguments, overrides=None):
-    """SailParameters from parsed arguments; `overrides` (a dict, as from a batch table) win."""
-    values = {item.name: getattr(arguments, item.name) for item in fields(SailParameters)}
+def from_arguments(arguments, overrides=None, kind=SailParameters):
+    """Parameters from parsed arguments; `overrides` (a dict, as from a batch table) win."""
+    values = {item.name: getattr(arguments, item.name) for item in fields(kind)}
     for name, value in (overrides or {}).items():
         if name not in values:
             known = ", ".join(sorted(values))
             raise ValueError(f"{name} is no parameter of the sail; known are {known}")
         values[name] = value
-    return SailParameters(**values)
+    return kind(**values)
+
+
+def read_parameters(path, kind=SailParameters):
+    """Parameters from a JSON file: an object of values by name, or a summary.json of a run.
+
+    Raises
+    ------
+    BadFile
+        If a name is unknown or a value out of range; parameters that are not named have their
+        defaults.
+    """
+    values = read_object(path)
+    values = values.get("parameters", values)
+    if not isinstance(values, dict):
+        raise BadFile(path, "parameters", f"must be an object, not {shown(values)}")
+    known = {item.name for item in fields(kind)}
+    for name in values:
+        if name not in known:
+            raise BadFile(path, shown(name)[1:-1], "is no parameter")
+    try:
+        return kind(**values)
+    except ValueError as error:
+        raise BadFile(path, "", str(error)) from None

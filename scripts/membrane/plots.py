@@ -8,8 +8,6 @@ import numpy as np
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
-from .geometry import area_vectors
-
 FILM = np.array([0.98, 0.80, 0.42])
 SPOOL = np.array([0.45, 0.48, 0.55])
 LIGHT = np.array([0.35, -0.45, 0.82]) / np.linalg.norm([0.35, -0.45, 0.82])
@@ -46,6 +44,29 @@ def plot_deployment(history, path):
     figure.savefig(path, dpi=DPI)
 
 
+def plot_history(history, columns, path):
+    """Some columns of a history over time, one above the other.
+
+    Parameters
+    ----------
+    history : mapping of (S,) float
+        With a column `time` [s].
+    columns : dict of str
+        Label of the axis by name of the column.
+    path : path
+        Picture to write.
+    """
+    figure = Figure(figsize=(7, 1 + 1.7 * len(columns)), layout="constrained")
+    every = figure.subplots(len(columns), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, (name, label) in zip(every, columns.items()):
+        axes.plot(history["time"], history[name], color="C0")
+        axes.set(ylabel=label)
+        axes.grid(alpha=0.3)
+        axes.margins(x=0)
+    every[-1].set(xlabel="time [s]")
+    figure.savefig(path, dpi=DPI)
+
+
 def plot_shapes(frames, mesh, path, times):
     """Views of the sail at up to six times, all from the same camera and at the same scale.
 
@@ -60,6 +81,36 @@ def plot_shapes(frames, mesh, path, times):
     times : (S,) float
         Times [s].
     """
+    _plot_views(frames, times, path, lambda axes, x, radius: draw_sail(axes, mesh, x, radius))
+
+
+def plot_sheets(frames, triangles, marked, path, times):
+    """Views of any sheet at up to six times, all from the same camera and at the same scale.
+
+    Parameters
+    ----------
+    frames : (S, N, 3) float
+        Positions [m], 1 <= S <= 6.
+    triangles : (T, 3) int
+        Node ids.
+    marked : (n,) int
+        Nodes drawn as dots, as those with tip masses.
+    path : path
+        Picture to write.
+    times : (S,) float
+        Times [s].
+    """
+
+    def draw(axes, positions, radius):
+        _draw_faces(axes, positions[triangles])
+        _draw_dots(axes, positions[marked])
+        _set_view(axes, radius, zoom=1.6)
+
+    _plot_views(frames, times, path, draw)
+
+
+def _plot_views(frames, times, path, draw):
+    """Six views or fewer; `draw(axes, positions, radius)` draws one."""
     if not 1 <= len(frames) <= 6 or len(times) != len(frames):
         raise ValueError(f"frames, times: {len(frames)} and {len(times)}; must be equal, 1 to 6")
     frames = np.asarray(frames)
@@ -68,7 +119,7 @@ def plot_shapes(frames, mesh, path, times):
     figure.subplots_adjust(left=0, right=1, bottom=0, top=0.98, wspace=0, hspace=0)
     for i, (positions, time) in enumerate(zip(frames, times)):
         axes = figure.add_subplot(2, 3, i + 1, projection="3d")
-        draw_sail(axes, mesh, positions, radius)
+        draw(axes, positions, radius)
         axes.set_title(f"{time:.3f} s", y=0.9, fontsize=11)
     figure.savefig(path, dpi=DPI)
 
@@ -104,16 +155,31 @@ def draw_sail(axes, mesh, positions, radius, zoom=1.9):
     `zoom` [-] enlarges the drawing within its part of the figure.
     """
     spool = _spool_faces(mesh.spool_radius, mesh.strip_width)
-    faces = list(positions[mesh.triangles]) + list(spool)
-    film_colours = _lambert(FILM, area_vectors(positions, mesh.triangles))
-    spool_colours = _lambert(SPOOL, np.array([np.cross(f[1] - f[0], f[2] - f[0]) for f in spool]))
-    colours = np.concatenate([film_colours, spool_colours])
-    edges = 0.8 * colours
-    style = {"facecolors": colours, "edgecolors": edges, "linewidths": 0.2, "clip_on": False}
-    axes.add_collection3d(Poly3DCollection(faces, **style))
+    _draw_faces(axes, positions[mesh.triangles], spool)
     cables = positions[mesh.cables]
     axes.add_collection3d(Line3DCollection(cables, colors="0.3", linewidths=0.6, clip_on=False))
-    axes.scatter(*positions[mesh.tips].T, color="0.1", s=9, depthshade=False, clip_on=False)
+    _draw_dots(axes, positions[mesh.tips])
+    _set_view(axes, radius, zoom)
+
+
+def _draw_faces(axes, film, spool=()):
+    """Draw shaded triangles of film (T, 3, 3) and faces of a spool, each (n, 3)."""
+    normals = np.cross(film[:, 1] - film[:, 0], film[:, 2] - film[:, 0])
+    colours = _lambert(FILM, normals)
+    if len(spool):
+        metal = _lambert(SPOOL, np.array([np.cross(f[1] - f[0], f[2] - f[0]) for f in spool]))
+        colours = np.concatenate([colours, metal])
+    style = {"facecolors": colours, "edgecolors": 0.8 * colours, "linewidths": 0.2}
+    axes.add_collection3d(Poly3DCollection([*film, *spool], clip_on=False, **style))
+
+
+def _draw_dots(axes, points):
+    """Draw masses (n, 3)."""
+    axes.scatter(*points.T, color="0.1", s=9, depthshade=False, clip_on=False)
+
+
+def _set_view(axes, radius, zoom=1.9):
+    """The camera, and the space it shows: up to `radius` [m] from the axis."""
     height = 0.45 * radius
     axes.set(xlim=(-radius, radius), ylim=(-radius, radius), zlim=(-height, height))
     axes.set_box_aspect((1, 1, 0.45), zoom=zoom)

@@ -9,16 +9,7 @@ import numpy as np
 from . import measures
 from .output import HistoryWriter, VtkSeries
 
-UNITS = {
-    "time": "s",
-    "deployment_rate": "-",
-    "mean_tip_radius": "m",
-    "mean_edge_middle_radius": "m",
-    "phase_difference": "rad",
-    "phase_difference_0": "rad",
-    "phase_difference_1": "rad",
-    "phase_difference_2": "rad",
-    "phase_difference_3": "rad",
+LEDGER_UNITS = {
     "kinetic_energy": "J",
     "elastic_energy": "J",
     "crease_energy": "J",
@@ -35,6 +26,19 @@ UNITS = {
     "angular_impulse": "kg m2/s",
     "buckled_sides": "-",
 }
+UNITS = {
+    "time": "s",
+    "deployment_rate": "-",
+    "mean_tip_radius": "m",
+    "mean_edge_middle_radius": "m",
+    "phase_difference": "rad",
+    "phase_difference_0": "rad",
+    "phase_difference_1": "rad",
+    "phase_difference_2": "rad",
+    "phase_difference_3": "rad",
+    **LEDGER_UNITS,
+}
+
 
 # Fields of the ParaView series: unit, and meaning on a side and on a triangle where it has one.
 SHAPE_FIELDS = {
@@ -86,10 +90,12 @@ class Recorder:
         Their times [s].
     """
 
+    units = UNITS
+
     def __init__(self, folder, mesh, sail, spin_rate):
         self.mesh, self.sail, self.spin_rate = mesh, sail, spin_rate
         self.rows, self.frames, self.frame_times = [], [], []
-        self._history = HistoryWriter(Path(folder) / "history.csv", UNITS)
+        self._history = HistoryWriter(Path(folder) / "history.csv", self.units)
         membrane = sail.membrane
         self._sides = np.array(membrane.sides)
         self._rest = np.array(membrane.restLengths)
@@ -116,20 +122,31 @@ class Recorder:
     def history(self, time):
         """Append the measures of the last step, whose forces acted `time` [s] after the release."""
         x = self.sail.last_positions()
+        row = {"time": time, **self.measured(time, x), **self._booked(x)}
+        self._history.write(row)
+        self.rows.append(row)
+        return row
+
+    def measured(self, time, x):
+        """Measures of the shape `x` (N, 3) [m] at `time` [s] by name."""
         lead = measures.tip_azimuths(self.mesh, x) - self.spin_rate * time
         if self._first_lead is None:
             self._first_lead = lead
         self._phases = phases = measures.nearest_turn(lead - self._first_lead, self._phases)
-        length = np.linalg.norm(x[self._sides[:, 1]] - x[self._sides[:, 0]], axis=1)
-        ledger = self.sail.ledger
-        crease = ledger.crease  # computed at each call
-        row = {
-            "time": time,
+        return {
             "deployment_rate": measures.deployment_rate(self.mesh, x),
             "mean_tip_radius": measures.mean_tip_radius(self.mesh, x),
             "mean_edge_middle_radius": measures.mean_edge_middle_radius(self.mesh, x),
             "phase_difference": float(phases.mean()),
             **{f"phase_difference_{i}": phases[i] for i in range(4)},
+        }
+
+    def _booked(self, x):
+        """What the ledger holds, and the number of buckled sides, by name."""
+        length = np.linalg.norm(x[self._sides[:, 1]] - x[self._sides[:, 0]], axis=1)
+        ledger = self.sail.ledger
+        crease = ledger.crease  # computed at each call
+        return {
             "kinetic_energy": ledger.kinetic,
             "elastic_energy": ledger.elastic,
             "crease_energy": crease,
@@ -146,9 +163,6 @@ class Recorder:
             "angular_impulse": ledger.angularImpulse,
             "buckled_sides": int(np.sum(length < self._critical)),
         }
-        self._history.write(row)
-        self.rows.append(row)
-        return row
 
     def shape(self, time):
         """Append the shape of the last step, at `time` [s], to the ParaView series."""
@@ -183,7 +197,7 @@ class Recorder:
 
     def columns(self):
         """The rows as arrays (S,) by name."""
-        return {name: np.array([row[name] for row in self.rows]) for name in UNITS}
+        return {name: np.array([row[name] for row in self.rows]) for name in self.units}
 
     def close(self):
         """Close history.csv."""

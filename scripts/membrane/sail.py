@@ -102,9 +102,16 @@ def spin_up(sail, p):
 
 def run(mesh, sail, p, recorder):
     """Release the sail and run it for p.duration, with rows and shapes at their intervals."""
-    omega = yade_classes.Omega()
-    omega.dt = p.dt
+    yade_classes.Omega().dt = p.dt
     scene.release(sail, p.omega, mesh.guide_nodes.ravel())
+    march(p, recorder, lambda measured: f"rate {measured['deployment_rate']:.3f}")
+
+
+def march(p, recorder, note):
+    """Run the released sail for p.duration; `note(row)` is shown beside the progress.
+
+    `p` has dt, duration, history_interval and shapes_interval [s].
+    """
     stride = max(1, round(p.history_interval / p.dt))
     rows = max(1, round(p.duration / (stride * p.dt)))
     between = round(p.shapes_interval / (stride * p.dt)) if p.shapes_interval > 0 else 0
@@ -118,7 +125,7 @@ def run(mesh, sail, p, recorder):
         measured = recorder.history(now)
         if row == rows or (between and row % max(1, between) == 0):
             recorder.shape(now)
-        progress.update(now, f"  rate {measured['deployment_rate']:.3f}")
+        progress.update(now, "  " + note(measured))
 
 
 def deploy(p, folder, pictures=True, page=True):

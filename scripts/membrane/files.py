@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Reading files of others: bounded, strict, and refused in one sentence where something is wrong.
+
+Every reader of the package raises `BadFile` for whatever a file may hold, and nothing else; only
+a file that cannot be opened at all is an OSError.
+"""
+
+import json
+import math
+import os
+from pathlib import Path
+
+LARGEST = 256 * 2**20  # bytes; ten million nodes fill about as much
+SHOWN = 60  # characters of a bad value that a message repeats
+
+
+class BadFile(ValueError):
+    """A file that cannot be used: says in one sentence which one, where in it, and why.
+
+    Parameters
+    ----------
+    path : path
+    place : str
+        Where in the file, as `file_frames[2].edges_vertices[7]`; empty: the file as a whole.
+    reason : str
+    """
+
+    def __init__(self, path, place, reason):
+        where = f"{path}: {place}" if place else str(path)
+        super().__init__(" ".join(f"{where}: {reason}".split()))
+
+
+def shown(value):
+    """A value as a message repeats it: on one line and not too long."""
+    # Never the whole of a long list or number: its text may be larger than the file.
+    if isinstance(value, (list, dict)):
+        return f"a list of {len(value)}" if isinstance(value, list) else "an object"
+    if isinstance(value, int) and abs(value) > 10**SHOWN:
+        return f"a whole number of {value.bit_length()} bits"
+    text = repr(value)
+    return text if len(text) <= SHOWN else text[:SHOWN] + "…"
+
+
+def read_bytes(path, largest=LARGEST):
+    """All of a file's bytes; BadFile if there are none or more than `largest`."""
+    with open(path, "rb") as file:
+        content = file.read(largest + 1)
+    if len(content) > largest:
+        raise BadFile(path, "", f"is larger than {largest} bytes, the most that is read")
+    if not content.strip():
+        raise BadFile(path, "", "is empty")
+    return content
+
+
+def read_text(path, largest=LARGEST):
+    """A file's text, which must be UTF-8; BadFile otherwise."""
+    try:
+        return read_bytes(path, largest).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise BadFile(path, f"byte {error.start}", "is no UTF-8 text") from None
+
+
+def read_json(path, largest=LARGEST):
+    """What a JSON file holds, by the letter of RFC 8259; an object must not name a key twice.
+
+    Raises
+    ------
+    BadFile
+        Also for NaN and Infinity, for numbers too large for a float and for deep nesting.
+    """
+
+    def refuse(word):
+        raise BadFile(path, "", f"holds {word}, which is no number of JSON")
+
+    def number(text):
+        value = float(text)
+        if not math.isfinite(value):
+            raise BadFile(path, "", f"holds {text[:SHOWN]}, too large a number")
+        return value
+
+    def one_of_each(pairs):
+        found = dict(pairs)
+        if len(found) < len(pairs):
+            seen = set()
+            twice = next(name for name, _ in pairs if name in seen or seen.add(name))
+            raise BadFile(path, shown(twice)[1:-1], "is given twice in one object")
+        return found
+
+    text = read_text(path, largest)
+    try:
+        return json.loads(
+            text, parse_constant=refuse, parse_float=number, object_pairs_hook=one_of_each
+        )
+    except BadFile:
+        raise
+    except json.JSONDecodeError as error:
+        place = f"line {error.lineno}, column {error.colno}"
+        raise BadFile(path, place, f"is no JSON: {error.msg}") from None
+    except RecursionError:
+        raise BadFile(path, "", "is nested too deeply") from None
+    except ValueError:  # a whole number of more digits than Python converts
+        raise BadFile(path, "", "holds a number of too many digits") from None
+
+
+def read_object(path, largest=LARGEST):
+    """The object (dict) that a JSON file holds; BadFile if it holds something else."""
+    found = read_json(path, largest)
+    if not isinstance(found, dict):
+        raise BadFile(path, "", f"must hold an object, not {shown(found)}")
+    return found
+
+
+def replace_text(path, text):
+    """Write a text file so that readers see either the old one or the new one."""
+    part = Path(path).with_name(Path(path).name + ".part")
+    part.write_text(text)
+    os.replace(part, path)

@@ -1,0 +1,461 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Any sheet as a spinning sail: a FOLD crease pattern or a mesh of gmsh, run and recorded.
+
+The sail starts flat, or in the pattern's folded form, turning as a whole; it flies free, or its
+hub is driven. Its centre of mass lies on the spin axis.
+"""
+
+import time
+from dataclasses import asdict, dataclass, field, fields
+from math import pi
+from pathlib import Path
+
+import numpy as np
+from yade import wrapper as yade_classes
+
+from . import measures, plots, scene
+from .fold_format import FoldFile, FoldFrame, fold_angles, read_fold, write_fold
+from .geometry import area_vectors, crease_angles
+from .msh import read_msh
+from .parameters import RUN, SailParameters, check, parameter
+from .pattern_mesh import mesh_pattern
+from .patterns import crease_pattern, nearest_pose
+from .record import LEDGER_UNITS, Recorder
+from .sail import instants, march, save_last_good, versions, write_json
+
+SHEET, SPIN = "sheet", "spin"
+STEP = 0.5  # of the critical one, by default
+TURN = np.radians(20)  # by which the outline turns at a corner, at least
+UNITS = {
+    "time": "s",
+    "mean_radius": "m",
+    "tip_radius": "m",
+    "projected_area": "-",
+    "height": "m",
+    "mean_crease_angle": "rad",
+    "spin_rate": "rad/s",
+    **LEDGER_UNITS,
+}
+
+
+def _as_in_the_paper(name, **changes):
+    """A parameter of the paper's sail, with another default maybe."""
+    (known,) = [item for item in fields(SailParameters) if item.name == name]
+    return field(default=changes.get("default", known.default), metadata=known.metadata)
+
+
+@dataclass(frozen=True)
+class PatternParameters:
+    """Parameters of a sail from a file; those with names as in SailParameters mean the same."""
+
+    unit: float = parameter(0.0, "m", SHEET, "length of the file's unit; 0: as the file says")
+    size: float = parameter(0.0, "m", SHEET, "length of the mesh's sides; 0: some 800 triangles")
+    start_frame: int = parameter(
+        -1, "-", SHEET, "frame to start from; -1: the first folded form, if any", least=-1
+    )
+    flat: bool = parameter(False, "-", SHEET, "start flat even if there is a folded form")
+
+    omega: float = parameter(6 * pi, "rad/s", SPIN, "spin rate at the start")
+    hub_radius: float = parameter(
+        0.0, "m", SPIN, "nodes this near the axis turn steadily; 0: the sail flies free"
+    )
+    tip_mass: float = parameter(0.36e-3, "kg", SPIN, "mass at each tip")
+    tips: str = parameter(
+        "corners",
+        "-",
+        SPIN,
+        "where the tip masses are: at a mesh's group 'tips' or else the corners of the outline, "
+        "or at the nodes farthest from the axis",
+        choices=("corners", "farthest", "none"),
+    )
+    gravity: float = parameter(0.0, "m/s2", SPIN, "along -z")
+
+    thickness: float = _as_in_the_paper("thickness")
+    young: float = _as_in_the_paper("young")
+    poisson: float = _as_in_the_paper("poisson")
+    density: float = _as_in_the_paper("density")
+    theta0: float = _as_in_the_paper("theta0")
+    alpha: float = _as_in_the_paper("alpha")
+    alpha_crease: float = _as_in_the_paper("alpha_crease", default=100.0)
+    beta: float = _as_in_the_paper("beta", default=3.0)
+    gamma: float = _as_in_the_paper("gamma")
+    zeta: float = _as_in_the_paper("zeta")
+    # The law as printed is no gradient where triangles at a crease are not equally high.
+    crease_law: str = _as_in_the_paper("crease_law", default="conservative")
+    air_density: float = _as_in_the_paper("air_density", default=0.0)
+
+    dt: float = parameter(0.0, "s", RUN, "time step; 0: half the critical one")
+    duration: float = _as_in_the_paper("duration")
+    history_interval: float = _as_in_the_paper("history_interval")
+    shapes_interval: float = _as_in_the_paper("shapes_interval")
+    energy_tolerance: float = _as_in_the_paper("energy_tolerance")
+    path: str = _as_in_the_paper("path")
+    exchange_period: int = _as_in_the_paper("exchange_period")
+    force_time_step: bool = _as_in_the_paper("force_time_step")
+
+    def __post_init__(self):
+        check(self)
+
+
+@dataclass(frozen=True, eq=False)
+class PatternSail:
+    """A sheet placed on the spin axis. N nodes.
+
+    Attributes
+    ----------
+    nodes : (N, 3) float, node
+        Rest positions [m].
+    triangles, creases, crease_signs
+        As of a SheetMesh.
+    start : (N, 3) float, node
+        Positions to start from [m].
+    tips, hub : (n,) int, node
+        With tip masses; driven.
+    letters : tuple
+        Sides (E, 2) and FOLD letters (E,) of the mesh.
+    """
+
+    nodes: np.ndarray
+    triangles: np.ndarray
+    creases: np.ndarray
+    crease_signs: np.ndarray
+    start: np.ndarray
+    tips: np.ndarray
+    hub: np.ndarray
+    lines: tuple
+
+
+def read_sheet(path, p):
+    """The SheetMesh of a .fold or .msh file.
+
+    Raises
+    ------
+    ValueError
+        In one sentence that names the file, if it cannot be made into a sheet.
+    """
+    path = Path(path)
+    kind = path.suffix.lower()
+    if kind not in (".fold", ".msh"):
+        raise ValueError(f"{path}: must be a crease pattern (.fold) or a mesh of gmsh (.msh)")
+    if kind == ".msh":
+        if p.start_frame >= 0 or p.size:
+            raise ValueError(f"{path}: a .msh file has neither frames nor a mesh size to choose")
+        return read_msh(path, p.unit or 1.0)
+    content = read_fold(path)
+    try:
+        pattern = crease_pattern(
+            content, p.unit or None, None if p.start_frame < 0 else p.start_frame
+        )
+        return mesh_pattern(pattern, p.size or None)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+
+
+def place(sheet, p):
+    """Put a sheet on the spin axis, choose its tips and its hub.
+
+    Returns
+    -------
+    PatternSail
+    """
+    tips = _tips(sheet, p.tips)
+    mass = _node_masses(sheet, p, tips)
+    nodes = sheet.nodes - np.average(sheet.nodes, axis=0, weights=mass)
+    folded = sheet.start is not None and not p.flat
+    start = nearest_pose(sheet.start, nodes, mass) if folded else nodes
+    hub = np.flatnonzero(np.hypot(nodes[:, 0], nodes[:, 1]) <= p.hub_radius)
+    if p.hub_radius > 0 and not len(hub):
+        nearest = np.min(np.hypot(nodes[:, 0], nodes[:, 1]))
+        raise ValueError(
+            f"hub_radius = {p.hub_radius} m: no node is that near the axis; the nearest is at "
+            f"{nearest:.4g} m"
+        )
+    return PatternSail(
+        nodes, sheet.triangles, sheet.creases, sheet.crease_signs, start, tips, hub, sheet.lines()
+    )
+
+
+def _tips(sheet, choice):
+    """Nodes (n,) that bear tip masses."""
+    if choice == "none":
+        return np.empty(0, dtype=int)
+    if choice == "corners" and len((sheet.groups or {}).get("tips", ())):
+        return sheet.groups["tips"]
+    around = sheet.rim
+    away = sheet.nodes - sheet.nodes.mean(axis=0)
+    radius = np.hypot(away[:, 0], away[:, 1])
+    corners = outline_corners(sheet.nodes[:, :2], around)
+    if choice == "farthest" or not len(corners):
+        return around[radius[around] > (1 - 1e-6) * radius[around].max()]
+    return corners
+
+
+def outline_corners(points, among):
+    """The nodes (n,) of `among` at corners of the convex outline of `points` (N, 2).
+
+    Counter-clockwise; where the outline turns by less than 20 degrees there is no corner. Of nodes
+    at the same place, as beside a cut, one is taken.
+    """
+    order = sorted(among.tolist(), key=lambda i: tuple(points[i]))
+    tiny = 1e-9 * np.ptp(points[among], axis=0).max() ** 2
+
+    def half(ids):  # Andrew's monotone chain
+        chain = []
+        for i in ids:
+            while len(chain) > 1 and _turn(points, *chain[-2:], i)[0] <= tiny:
+                chain.pop()
+            if not chain or np.any(points[chain[-1]] != points[i]):
+                chain.append(i)
+        return chain[:-1]
+
+    ring = half(order) + half(order[::-1])
+    turns = [
+        np.arctan2(*_turn(points, ring[k - 1], ring[k], ring[(k + 1) % len(ring)]))
+        for k in range(len(ring))
+    ]
+    return np.array([i for i, turn in zip(ring, turns) if turn > TURN], dtype=int)
+
+
+def _turn(points, a, b, c):
+    """Cross and dot product of a -> b and b -> c."""
+    (x, y), (u, v) = points[b] - points[a], points[c] - points[b]
+    return x * v - y * u, x * u + y * v
+
+
+def _node_masses(sheet, p, tips):
+    """Masses (N,) [kg] of film and tips, equation (4)."""
+    areas = np.linalg.norm(area_vectors(sheet.nodes, sheet.triangles), axis=1)
+    masses = np.zeros(len(sheet.nodes))
+    np.add.at(masses, sheet.triangles, p.density * p.thickness * areas[:, None] / 3)
+    masses[tips] += p.tip_mass
+    return masses
+
+
+def build(sail, p):
+    """Put a PatternSail into the (empty) scene, at its start and turning; returns MembraneScene."""
+    masses = np.zeros(len(sail.nodes))
+    masses[sail.tips] = p.tip_mass
+    membrane = scene.add_membrane(
+        sail.nodes,
+        sail.triangles,
+        sail.creases,
+        sail.crease_signs,
+        positions=sail.start,
+        material=scene.film(p.young, p.poisson, p.density, p.thickness),
+        pointMasses=masses.tolist(),
+        alpha=p.alpha,
+        alphaCrease=p.alpha_crease,
+        interactions=p.path == "law2",
+    )
+    made = scene.set_engines(
+        membrane,
+        path=p.path,
+        exchange_period=p.exchange_period,
+        driven=[membrane.bodyIds[i] for i in sail.hub],
+        omega=p.omega,
+        gravity=(0, 0, -p.gravity),
+        beta=p.beta,
+        gamma=p.gamma,
+        theta0=p.theta0,
+        crease_law=p.crease_law,
+        zeta=p.zeta,
+        air_density=p.air_density,
+        force_time_step=p.force_time_step,
+        energy_tolerance=p.energy_tolerance,
+    )
+    made.hold(sail.hub)
+    return made
+
+
+class PatternRecorder(Recorder):
+    """Recorder with measures that make sense for any sail."""
+
+    units = UNITS
+
+    def __init__(self, folder, sail, made):
+        super().__init__(folder, sail, made, 0.0)
+        self._mass = made.masses()
+        self._flat_area = area_vectors(sail.nodes, sail.triangles)
+        self._flat_area = np.linalg.norm(self._flat_area, axis=1).sum()
+
+    def measured(self, time, x):
+        """Measures of the shape `x` (N, 3) [m] by name; UNITS has their units."""
+        radius = np.hypot(x[:, 0], x[:, 1])
+        inertia = np.sum(self._mass * radius**2)
+        mesh = self.mesh
+        angles = crease_angles(x, mesh.triangles, mesh.creases, mesh.crease_signs)
+        return {
+            "mean_radius": float(np.average(radius, weights=self._mass)),
+            "tip_radius": float(np.mean(radius[mesh.tips if len(mesh.tips) else slice(None)])),
+            "projected_area": float(area_vectors(x, mesh.triangles)[:, 2].sum() / self._flat_area),
+            "height": float(np.ptp(x[:, 2])),
+            "mean_crease_angle": float(angles.mean()) if len(angles) else pi,
+            "spin_rate": float(self.sail.ledger.angularMomentum / inertia),
+        }
+
+
+def fly(sheet, p, folder, pictures=True, shown=None):
+    """Run a sheet as a spinning sail and write the results into `folder`.
+
+    Parameters
+    ----------
+    sheet : SheetMesh
+    p : PatternParameters
+    folder : path
+        Made if missing.
+    pictures : bool
+        Draw shapes.png and history.png.
+    shown : sequence of float, optional
+        Up to six times [s] to show in shapes.png; default: up to the fullest deployment.
+
+    Returns
+    -------
+    dict
+        What is written to summary.json.
+    """
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    begin = time.monotonic()
+    sail = place(sheet, p)
+    made = build(sail, p)
+    critical = made.forces.criticalTimeStep()
+    dt = p.dt or STEP * critical
+    if dt > critical and not p.force_time_step:
+        raise ValueError(
+            f"dt = {dt} s must be <= {critical:.4g} s, the critical time step of this sail "
+            "(force_time_step overrules)"
+        )
+    yade_classes.Omega().dt = dt
+    scene.release(made, p.omega, [])
+    made.rotation.dead, made.spool.dead = not len(sail.hub), True
+    recorder = PatternRecorder(folder, sail, made)
+    started = time.monotonic()
+    try:
+        march(_Steps(dt, p), recorder, lambda row: f"area {row['projected_area']:.3f}")
+    except RuntimeError as error:
+        raise RuntimeError(f"{error}. {save_last_good(made, folder)}") from error
+    finally:
+        recorder.close()
+    ended = time.monotonic()
+    history = recorder.columns()
+    export(sail, recorder, made, p, folder / "sail.fold")
+    if pictures:
+        draw(sail, recorder, history, folder, shown)
+    momentum = history["angular_momentum"] - history["angular_impulse"]
+    summary = {
+        "parameters": asdict(p),
+        "versions": versions(),
+        "mesh": {
+            "nodes": len(sail.nodes),
+            "triangles": len(sail.triangles),
+            "sides": len(made.membrane.sides),
+            "creases": len(sail.creases),
+            "tips": sail.tips.tolist(),
+            "hub": sail.hub.tolist(),
+            "film_mass": p.density * p.thickness * made.membrane.area,
+        },
+        "critical_time_step": critical,
+        "dt": dt,
+        "wall_time": {"build": started - begin, "run": ended - started},
+        "measures": {
+            **{f"final_{name}": float(history[name][-1]) for name in list(UNITS)[1:7]},
+            "largest_projected_area": float(history["projected_area"].max()),
+            "time_of_area_0.9": measures.first_time_above(
+                history["time"], history["projected_area"], 0.9
+            ),
+            "largest_energy": float(history["kinetic_energy"].max()),
+            "largest_energy_imbalance": float(np.abs(history["energy_balance"]).max()),
+            "largest_unexplained_energy": float(
+                np.abs(history["energy_balance"] - history["kink_error"]).max()
+            ),
+            "largest_change_of_angular_momentum": float(np.ptp(momentum)),
+        },
+    }
+    write_json(folder / "summary.json", summary)
+    return summary
+
+
+@dataclass(frozen=True)
+class _Steps:
+    """What `march` asks for, with the time step that was chosen."""
+
+    dt: float
+    parameters: PatternParameters
+
+    def __getattr__(self, name):
+        return getattr(self.parameters, name)
+
+
+def draw(sail, recorder, history, folder, shown=None):
+    """Write history.png, and shapes.png with the shapes nearest to the times `shown` [s]."""
+    columns = {
+        "projected_area": "projected area\nover flat area [-]",
+        "tip_radius": "radius of the tips [m]",
+        "mean_crease_angle": "mean crease\nangle [deg]",
+        "spin_rate": "spin rate [rad/s]",
+    }
+    degrees = {"mean_crease_angle": np.degrees(history["mean_crease_angle"])}
+    plots.plot_history({**history, **degrees}, columns, folder / "history.png")
+    times = np.array(recorder.frame_times)
+    if shown is None:
+        areas = [area_vectors(x, sail.triangles)[:, 2].sum() for x in recorder.frames]
+        picks = instants(times, int(np.argmax(areas)))
+    else:
+        picks = np.unique([int(np.argmin(np.abs(times - t))) for t in shown])
+    frames = [recorder.frames[i] for i in picks]
+    plots.plot_sheets(frames, sail.triangles, sail.tips, folder / "shapes.png", times[picks])
+
+
+def export(sail, recorder, made, p, path):
+    """Write the mesh and its recorded shapes as a FOLD file of several frames.
+
+    The key frame is the flat mesh: creases M and V, all other sides inside the film J, its edge B.
+    What only this package knows stands under keys of the namespace `membrane:`.
+    """
+    sides, letters = sail.lines
+    row = {tuple(pair): i for i, pair in enumerate(sides.tolist())}
+    rows = np.array([row[tuple(sorted(pair))] for pair in sail.creases.tolist()], dtype=int)
+    faces = tuple(sail.triangles)
+    masses = np.zeros(len(sail.nodes))
+    masses[sail.tips] = p.tip_mass
+    made_of = {name: getattr(p, name) for name in ("young", "poisson", "density", "thickness")}
+    shared = {"edges": sides, "letters": letters, "faces": faces, "unit": "m"}
+    flat = np.ptp(sail.nodes[:, 2]) == 0
+    key_frame = FoldFrame(
+        coords=sail.nodes,
+        classes=("creasePattern",),
+        attributes=("2D" if flat else "3D", "joins"),
+        title="flat",
+        custom={
+            "membrane:material": made_of,
+            "vertices_membrane:pointMass": masses.tolist(),
+            "vertices_membrane:mass": made.masses().tolist(),
+            "edges_membrane:kind": ["crease" if c in "MV" else "film" for c in letters],
+            "membrane:hub": sail.hub.tolist(),
+        },
+        **shared,
+    )
+    frames = [key_frame]
+    for now, x in zip(recorder.frame_times, recorder.frames):
+        angles = np.zeros(len(sides))
+        bent = crease_angles(x, sail.triangles, sail.creases, sail.crease_signs)
+        angles[rows] = fold_angles(bent, sail.crease_signs)
+        letters_now = letters.copy()
+        # Faces that have passed through each other are bent the other way than the pattern says.
+        letters_now[rows] = np.where(
+            angles[rows] == 0, letters[rows], np.where(angles[rows] < 0, "M", "V")
+        )
+        same = np.array_equal(letters_now, letters)
+        frames.append(
+            FoldFrame(
+                coords=x,
+                angles=angles,
+                classes=("foldedForm",),
+                attributes=("3D", "joins"),
+                title=f"t = {now:.6g} s",
+                custom={**key_frame.custom, "membrane:time": now},
+                **{**shared, "letters": letters if same else letters_now},
+            )
+        )
+    texts = {"file_creator": "membrane"}
+    write_fold(path, FoldFile(tuple(frames), texts, ("singleModel", "animation")))

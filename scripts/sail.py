@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Any sheet as a spinning sail: a crease pattern in a FOLD file, or a mesh of gmsh.
+
+Run it by `scripts/run.sh sail PATTERN.fold|MESH.msh [options]`.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+from membrane import pattern_sail
+from membrane.parameters import from_arguments, parse
+from membrane.pattern_sail import PatternParameters
+
+
+def command_line():
+    """Parsed sys.argv."""
+    parser = argparse.ArgumentParser(
+        prog="sail", description="Spin a sail made from a crease pattern or a mesh."
+    )
+    parser.add_argument("file", type=Path, help="crease pattern (.fold) or mesh of gmsh (.msh)")
+    parser.add_argument(
+        "--out", type=Path, default=Path("out"), metavar="DIR", help="output folder"
+    )
+    parser.add_argument("--no-pictures", action="store_true", help="draw no pictures")
+    return parse(parser, PatternParameters)
+
+
+def main():
+    """Spin the sail; sys.exit with one sentence if that cannot be."""
+    try:
+        arguments = command_line()
+        folder, pictures = arguments.out, not arguments.no_pictures
+        parameters = from_arguments(arguments, kind=PatternParameters)
+        sheet = pattern_sail.read_sheet(arguments.file, parameters)
+        summary = pattern_sail.fly(sheet, parameters, folder, pictures)
+    except (ValueError, RuntimeError, OSError) as error:
+        sys.exit(f"sail: {error}")
+    found = summary["measures"]
+    print(
+        f"Projected area {found['final_projected_area']:.3f} of the flat one after "
+        f"{parameters.duration:g} s, at most {found['largest_projected_area']:.3f}; energy from "
+        f"nowhere {found['largest_unexplained_energy']:.1e} of {found['largest_energy']:.1e} J; "
+        f"{summary['wall_time']['run']:.1f} s of wall time."
+    )
+    print("Look at:")
+    shown = ["shapes.png", "history.png"] if pictures else []
+    others = ["history.csv", "summary.json", "sail.fold", "shapes/film.pvd", "shapes/sides.pvd"]
+    for name in [*shown, *others]:
+        print(f"  {folder / name}")
+
+
+main()

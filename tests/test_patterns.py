@@ -1,0 +1,275 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Crease patterns become meshes: faces, holes, cuts, creases, folded starts; or one sentence."""
+
+import unittest
+from dataclasses import replace
+
+import numpy as np
+from membrane import geometry
+from membrane.fold_format import FoldFile, FoldFrame
+from membrane.pattern_mesh import mean_value_coordinates, mesh_pattern
+from membrane.patterns import crease_pattern, find_faces, fold_by_angles, nearest_pose
+from support import rotation
+
+
+def frame(coords, edges, letters, **more):
+    """A FoldFrame in metres from plain lists."""
+    coords = np.array([(*point, 0.0)[:3] for point in coords], dtype=float)
+    return FoldFrame(
+        coords=coords, edges=np.array(edges), letters=np.array(list(letters)), unit="m", **more
+    )
+
+
+def pattern_of(*frames, **options):
+    return crease_pattern(FoldFile(frames), **options)
+
+
+def ring(first, count):
+    """Edges of a closed loop of vertices."""
+    ids = first + np.arange(count)
+    return np.column_stack([ids, np.roll(ids, -1)]).tolist()
+
+
+SQUARE = [(0, 0), (3, 0), (3, 3), (0, 3)]
+HOLE = [(1, 1), (2, 1), (2, 2), (1, 2)]
+# The square, its lower edge halved, and a cut from the middle of that edge.
+CUT = [*SQUARE, (1.5, 0), (1.5, 1.2)]
+CUT_EDGES = [(0, 4), (4, 1), (1, 2), (2, 3), (3, 0), (4, 5)]
+
+
+class TestFaces(unittest.TestCase):
+    def test_a_hole_of_border_edges_is_no_film(self):
+        pattern = pattern_of(frame([*SQUARE, *HOLE], [*ring(0, 4), *ring(4, 4)], "B" * 8))
+        self.assertAlmostEqual(pattern.area, 9 - 1)
+        self.assertEqual((len(pattern.faces), len(pattern.holes[0])), (1, 1))
+
+    def test_a_loop_of_creases_is_film_on_both_sides(self):
+        pattern = pattern_of(frame([*SQUARE, *HOLE], [*ring(0, 4), *ring(4, 4)], "BBBBMMMM"))
+        self.assertAlmostEqual(pattern.area, 9)
+        self.assertEqual(len(pattern.faces), 2)
+
+    def test_film_within_a_hole_is_another_piece_and_refused(self):
+        island = [(1.2, 1.2), (1.8, 1.2), (1.8, 1.8), (1.2, 1.8)]
+        edges = [*ring(0, 4), *ring(4, 4), *ring(8, 4)]
+        with self.assertRaisesRegex(ValueError, "several pieces"):
+            pattern_of(frame([*SQUARE, *HOLE, *island], edges, "B" * 12))
+
+    def test_faces_of_a_random_triangulation_are_found_again(self):
+        from matplotlib.tri import Triangulation
+
+        rng = np.random.default_rng(3)
+        points = rng.uniform(size=(60, 2))
+        mesh = Triangulation(*points.T)
+        sides, _, shares = geometry.unique_sides(mesh.triangles)
+        letters = np.where(shares == 1, "B", "V")
+        vertices = np.column_stack([points, np.zeros(60)])
+        faces, _ = find_faces(vertices, sides, letters)
+        self.assertEqual(
+            {frozenset(face.tolist()) for face in faces},
+            {frozenset(corners) for corners in mesh.triangles.tolist()},
+        )
+
+    def test_what_makes_no_sheet_is_said(self):
+        square = ring(0, 4)
+        for points, edges, letters, words in (
+            (SQUARE, [*square, (0, 2), (1, 3)], "BBBBMM", "edges 4 and 5 cross"),
+            ([*SQUARE, (1.5, 0)], [*square, (4, 2)], "BBBBM", "vertex 4 lies on the edge"),
+            (SQUARE, square[:3], "BBB", "border .B. with the same face"),
+            (SQUARE, square, "FFFF", "enclose no film"),
+            (SQUARE, [*square, (1, 0)], "BBBBB", "given 2 times"),
+            ([*SQUARE, (3, 0)], [*square, (1, 4)], "BBBBM", "no length"),
+            (CUT, CUT_EDGES, "BBBBBB", "a cut is C"),
+            (SQUARE, [*square, (0, 2)], "MBBBM", "round its faces do not close"),
+        ):
+            with self.subTest(words=words), self.assertRaisesRegex(ValueError, words):
+                pattern_of(frame(points, edges, letters))
+
+    def test_faces_that_contradict_the_edges_are_refused(self):
+        edges, letters = [*ring(0, 4), (0, 2)], "BBBBM"
+        for faces, words in (
+            ([[0, 1, 2], [0, 3, 2]], "runs clockwise"),
+            ([[0, 1, 2], [2, 3, 1]], "no edge does"),
+            ([[0, 1, 2]], "crease .M. but has no face on one side"),
+        ):
+            loops = tuple(np.array(face) for face in faces)
+            with self.subTest(words=words), self.assertRaisesRegex(ValueError, words):
+                pattern_of(frame(SQUARE, edges, letters, faces=loops))
+
+    def test_a_unit_without_length_must_be_told(self):
+        one = replace(frame(SQUARE, ring(0, 4), "BBBB"), unit="unit")
+        with self.assertRaisesRegex(ValueError, "'unit'"):
+            pattern_of(one)
+        self.assertAlmostEqual(pattern_of(one, unit=0.1).area, 0.09)
+
+
+class TestMesh(unittest.TestCase):
+    def test_area_and_orientation_of_non_convex_faces_with_holes(self):
+        corner = [(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)]
+        hole = [(0.3, 0.3), (0.7, 0.3), (0.5, 0.7)]
+        pattern = pattern_of(frame([*corner, *hole], [*ring(0, 6), *ring(6, 3)], "B" * 9))
+        mesh = mesh_pattern(pattern, 0.2)
+        upward = geometry.area_vectors(mesh.nodes, mesh.triangles)[:, 2]
+        self.assertGreater(upward.min(), 0)
+        self.assertAlmostEqual(upward.sum(), 5 - 0.08, places=12)
+
+    def test_creases_run_along_their_edges_at_every_size(self):
+        pattern = pattern_of(frame(SQUARE, [*ring(0, 4), (0, 2)], "BBBBV"))
+        for size in (5.0, 1.0, 0.2):
+            mesh = mesh_pattern(pattern, size)
+            lengths = geometry.side_lengths(mesh.nodes, mesh.creases)
+            self.assertAlmostEqual(lengths.sum(), 3 * np.sqrt(2), places=12)
+            np.testing.assert_allclose(mesh.nodes[mesh.creases, 0], mesh.nodes[mesh.creases, 1])
+            self.assertEqual(set(mesh.crease_signs), {geometry.VALLEY})
+            geometry.crease_corners(mesh.triangles, mesh.creases)
+
+    def test_flat_joined_and_unassigned_edges_are_sides_without_crease(self):
+        for letter in "FJU":
+            mesh = mesh_pattern(pattern_of(frame(SQUARE, [*ring(0, 4), (0, 2)], "BBBB" + letter)))
+            self.assertEqual(len(mesh.creases), 0)
+            on = np.abs(mesh.nodes[:, 0] - mesh.nodes[:, 1]) < 1e-12
+            self.assertGreater(on.sum(), 5)
+
+    def test_an_unassigned_edge_folds_as_its_angle_says(self):
+        for angle, sign in ((-30.0, geometry.MOUNTAIN), (30.0, geometry.VALLEY)):
+            angles = np.array([0.0, 0, 0, 0, angle])
+            one = frame(SQUARE, [*ring(0, 4), (0, 2)], "BBBBU", angles=angles)
+            self.assertEqual(set(mesh_pattern(pattern_of(one)).crease_signs), {sign})
+
+    def test_a_cut_opens_at_the_rim_and_ends_in_one_node(self):
+        mesh = mesh_pattern(pattern_of(frame(CUT, CUT_EDGES, "BBBBBC")), 0.3)
+        on = (np.abs(mesh.nodes[:, 0] - 1.5) < 1e-9) & (mesh.nodes[:, 1] < 1.2 + 1e-9)
+        heights, counts = np.unique(mesh.nodes[on, 1].round(9), return_counts=True)
+        self.assertEqual(counts.tolist(), [2] * (len(heights) - 1) + [1])
+        self.assertEqual(len(heights), 5)
+        sides, _, shares = geometry.unique_sides(mesh.triangles)
+        rim = geometry.side_lengths(mesh.nodes, sides[shares == 1]).sum()
+        self.assertAlmostEqual(rim, 12 + 2 * 1.2, places=12)
+        # Euler's number of a disk: still one piece without a hole.
+        self.assertEqual(len(mesh.nodes) - len(sides) + len(mesh.triangles), 1)
+
+    def test_a_cut_within_the_film_is_a_hole_without_area(self):
+        points = [*SQUARE, (1, 1.5), (2, 1.5)]
+        mesh = mesh_pattern(pattern_of(frame(points, [*ring(0, 4), (4, 5)], "BBBBC")), 0.25)
+        sides = geometry.unique_sides(mesh.triangles)[0]
+        self.assertEqual(len(mesh.nodes) - len(sides) + len(mesh.triangles), 0)
+        self.assertAlmostEqual(mesh.area, 9)
+
+    def test_a_slit_by_doubled_border_edges_stays_open(self):
+        points = [(0, 0), (1, 0), (1, 1), (0, 1), (1, 0), (2, 0), (2, 1)]
+        edges = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 2), (2, 4)]
+        faces = (np.array([0, 1, 2, 3]), np.array([4, 5, 6, 2]))
+        with self.assertRaisesRegex(ValueError, "pieces"):  # they meet in one vertex only
+            pattern_of(frame(points, edges, "B" * 8, faces=faces))
+        tied = [*points, (1, 2), (0, 2), (2, 2)]
+        edges += [(3, 8), (8, 7), (7, 9), (9, 6), (2, 7)]
+        edges[2], edges[6] = (2, 3), (6, 2)
+        faces = (*faces, np.array([3, 2, 7, 8]), np.array([2, 6, 9, 7]))
+        letters = [*"BBVBBBVBBBBBV"]
+        mesh = mesh_pattern(pattern_of(frame(tied, edges, letters, faces=faces)), 0.3)
+        sides, _, shares = geometry.unique_sides(mesh.triangles)
+        rim = geometry.side_lengths(mesh.nodes, sides[shares == 1]).sum()
+        self.assertAlmostEqual(rim, 8 + 2, places=12)
+
+    def test_a_size_out_of_range_is_refused(self):
+        pattern = pattern_of(frame(SQUARE, ring(0, 4), "BBBB"))
+        for size in (0.0, -1.0, float("nan"), 1e-4):
+            with self.assertRaisesRegex(ValueError, "size = "):
+                mesh_pattern(pattern, size)
+
+
+class TestFoldedStart(unittest.TestCase):
+    STRIP = [(0, 0), (1, 0), (2, 0), (3, 0), (3, 1), (2, 1), (1, 1), (0, 1)]
+    EDGES = [*ring(0, 8), (1, 6), (2, 5)]
+
+    def strip(self, *angles):
+        letters = "B" * 8 + "".join("M" if a < 0 else "V" for a in angles)
+        return frame(self.STRIP, self.EDGES, letters, angles=np.array([0.0] * 8 + [*angles]))
+
+    def test_a_valley_of_90_degrees_stands_a_face_upright(self):
+        pattern = pattern_of(self.strip(90, 0))
+        ground = nearest_pose(pattern.folded[[0, 1, 6, 7]], pattern.vertices[[0, 1, 6, 7]])
+        self.assertLess(np.ptp(ground[:, 2]), 1e-12)
+        folded = fold_by_angles(pattern)
+        # The first face found may be any; seen from the one on the ground the rest stands upright.
+        x, y, up = (folded[1] - folded[0], folded[7] - folded[0], folded[2] - folded[1])
+        np.testing.assert_allclose(np.cross(x, y), up, atol=1e-12)
+
+    def test_two_mountains_of_120_degrees_close_a_triangle_below(self):
+        folded = fold_by_angles(pattern_of(self.strip(-120, -120)))
+        np.testing.assert_allclose(folded[3], folded[0], atol=1e-12)
+        self.assertLess(folded[2, 2], -0.8)
+
+    def test_the_mesh_starts_with_the_angles_of_the_file(self):
+        angles = (70.0, -35.0)
+        mesh = mesh_pattern(pattern_of(self.strip(*angles)), 0.2)
+        found = geometry.crease_angles(mesh.start, mesh.triangles, mesh.creases, mesh.crease_signs)
+        first = mesh.nodes[mesh.creases[:, 0], 0] < 1.5
+        np.testing.assert_allclose(np.degrees(found[first]), 180 - 70, atol=1e-9)
+        np.testing.assert_allclose(np.degrees(found[~first]), 180 - 35, atol=1e-9)
+        sides = mesh.lines()[0]
+        rest, now = (geometry.side_lengths(x, sides) for x in (mesh.nodes, mesh.start))
+        np.testing.assert_allclose(now, rest, rtol=1e-12)
+
+    def test_angles_that_do_not_go_together_are_refused(self):
+        points = [(0, 0), (1, 0), (0, 1), (-1, 0), (0, -1)]
+        edges = [(1, 2), (2, 3), (3, 4), (4, 1), (0, 1), (0, 2), (0, 3), (0, 4)]
+        for bent, words in (((60, 0, 20, 0), "edge . would"), ((60, 50, 20, 30), "vertex . would")):
+            angles = np.array([0.0, 0, 0, 0, *bent])
+            with self.assertRaisesRegex(ValueError, "do not go together: " + words):
+                pattern_of(frame(points, edges, "BBBBVVVV", angles=angles))
+
+    def test_a_folded_form_alone_unrolls_to_its_pattern(self):
+        pattern = pattern_of(self.strip(50, -110))
+        turned = pattern.folded @ rotation(np.random.default_rng(1)).T + 2.0
+        faces = ([0, 1, 6, 7], [1, 2, 5, 6], [2, 3, 4, 5])
+        form = FoldFrame(
+            coords=turned,
+            edges=pattern.edges,
+            letters=pattern.letters,
+            faces=tuple(np.array(face) for face in faces),
+            classes=("foldedForm",),
+            unit="m",
+        )
+        found = pattern_of(form)
+        a, b = np.triu_indices(8, 1)
+        one, two = (np.linalg.norm(x[a] - x[b], axis=1) for x in (found.vertices, pattern.vertices))
+        np.testing.assert_allclose(one, two, atol=1e-12)
+        np.testing.assert_array_equal(found.folded, turned)
+        self.assertGreater(found.area, 0)
+
+    def test_a_stretched_folded_form_is_refused(self):
+        pattern = pattern_of(self.strip(50, 0))
+        form = replace(self.strip(50, 0), coords=1.02 * pattern.folded, classes=("foldedForm",))
+        with self.assertRaisesRegex(ValueError, "changes the length of edge"):
+            pattern_of(replace(self.strip(50, 0), angles=None), form)
+
+    def test_letters_meant_from_below_are_turned_over(self):
+        flat, pattern = replace(self.strip(60, 60), angles=None), pattern_of(self.strip(60, 60))
+        for letters, expected in (("VV", {-1}), ("MM", {-1}), ("MV", {1, -1})):
+            named = np.array(list("B" * 8 + letters))
+            form = replace(flat, letters=named, coords=pattern.folded, classes=("foldedForm",))
+            one = pattern_of(replace(flat, letters=named), form)
+            self.assertEqual(set(mesh_pattern(one, 0.5).crease_signs), expected)
+
+
+class TestTools(unittest.TestCase):
+    def test_mean_value_coordinates_give_linear_functions_back(self):
+        """Also in a face that is not convex and has a hole and a slit."""
+        corner = [(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)]
+        extra = [(0.3, 0.3), (0.7, 0.3), (0.5, 0.7), (1.5, 0.5), (2.5, 0.5)]
+        vertices = np.array([(*p, 0.0) for p in [*corner, *extra]])
+        sides = np.array([*ring(0, 6), (7, 6), (8, 7), (6, 8), (9, 10), (10, 9)])
+        rng = np.random.default_rng(2)
+        points = np.column_stack([rng.uniform(0.05, 2.9, 40), rng.uniform(0.05, 0.25, 40)])
+        points = np.column_stack([points, np.zeros(40)])
+        weights = mean_value_coordinates(points, vertices, sides)
+        np.testing.assert_allclose(weights @ vertices, points, atol=1e-12)
+
+    def test_nearest_pose_takes_back_any_motion(self):
+        rng = np.random.default_rng(4)
+        places, turn = rng.normal(size=(20, 3)), rotation(rng)
+        np.testing.assert_allclose(nearest_pose(places @ turn.T + 3.0, places), places, atol=1e-12)
+
+
+if __name__ == "__main__":
+    unittest.main()
