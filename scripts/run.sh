@@ -31,7 +31,7 @@ END
 
 # Debian packages to build and run, to verify, to compare the speed with, and to format.
 run_packages=(yade python3-numpy python3-matplotlib python3-vtk9
-    g++ cmake make libboost-dev libeigen3-dev python3-dev libgtest-dev)
+    g++ cmake make libboost-dev libeigen3-dev python3-dev libglut-dev libgtest-dev)
 verify_packages=(calculix-ccx python3-scipy)
 bench_packages=(lammps openmpi-bin)
 format_packages=(clang-format black python3-flake8 shellcheck)
