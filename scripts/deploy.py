@@ -11,7 +11,7 @@ import sys
 from dataclasses import fields
 from pathlib import Path
 
-from membrane import sail
+from membrane import sail, window
 from membrane.parameters import SailParameters, add_arguments, from_arguments
 from yade import utils
 from yade.wrapper import Omega
@@ -26,6 +26,9 @@ def command_line():
         "--out", type=Path, metavar="DIR", help="output folder (default: out, in a batch out/CASE)"
     )
     parser.add_argument("--no-pictures", action="store_true", help="draw no pictures")
+    parser.add_argument(
+        "--watch", action="store_true", help="show the run in YADE's window, and leave it open"
+    )
     add_arguments(parser)
     return parser.parse_args()
 
@@ -48,7 +51,8 @@ def main():
     folder = arguments.out or (Path("out") / case.replace("/", "_") if case else Path("out"))
     try:
         parameters = from_arguments(arguments, overrides)
-        summary = sail.deploy(parameters, folder, pictures=not arguments.no_pictures)
+        look = window.Watch() if arguments.watch else sail.look_away
+        summary = sail.deploy(parameters, folder, not arguments.no_pictures, look)
     except (ValueError, RuntimeError, OSError) as error:
         sys.exit(f"deploy: {error}")
     found, wall = summary["measures"], summary["wall_time"]
@@ -62,6 +66,9 @@ def main():
     shown = [] if arguments.no_pictures else ["shapes.png", "deployment.png"]
     for name in [*shown, "history.csv", "summary.json", "shapes/film.pvd", "shapes/sides.pvd"]:
         print(f"  {folder / name}")
+    if arguments.watch:
+        print("Close the window to end.")
+        look.wait()
 
 
 main()

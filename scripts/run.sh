@@ -9,6 +9,7 @@ usage: scripts/run.sh COMMAND [options]
 
   deploy [-j N] [options]   fold, spin up and deploy the sail, on N threads (default 1);
                             options of scripts/deploy.py, listed by `scripts/run.sh deploy --help`
+  watch [-j N] [options]    deploy the sail in YADE's own window; close the window to end
   test [-j N] [--full] [MODULE ...]
                             run the tests, or those of some modules; --full adds the long ones
   bench [options]           measure the speed beside YADE's own functors and LAMMPS: tables, and
@@ -32,9 +33,12 @@ END
 # Debian packages to build and run, to verify, to compare the speed with, and to format.
 run_packages=(yade python3-numpy python3-matplotlib python3-vtk9
     g++ cmake make libboost-dev libeigen3-dev python3-dev libglut-dev libgtest-dev)
+test_packages=(xvfb xauth) # a display for the tests of drawing
 verify_packages=(calculix-ccx python3-scipy)
 bench_packages=(lammps openmpi-bin)
 format_packages=(clang-format black python3-flake8 shellcheck)
+
+no_display=(-n) # how YADE is told to do without
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 build=$root/build
@@ -132,7 +136,7 @@ run_yade() {
         mkdir -p "$HOME"
     fi
     export PYTHONPATH=$build/python${PYTHONPATH:+:$PYTHONPATH} PYTHONUNBUFFERED=1 MPLBACKEND=Agg
-    exec yade -n -x -j "$threads" "$script" "${options[@]}"
+    exec yade "${no_display[@]}" -x -j "$threads" "$script" "${options[@]}"
 }
 
 run_tests() {
@@ -180,7 +184,14 @@ deploy)
     compile
     run_yade "$root/scripts/deploy.py" "$@"
     ;;
+watch)
+    [[ -n ${DISPLAY-} ]] || die "watch needs a display, and DISPLAY is not set"
+    compile
+    no_display=()
+    run_yade "$root/scripts/deploy.py" --watch "$@"
+    ;;
 test)
+    need "${test_packages[@]}"
     compile
     run_tests "$@"
     ;;

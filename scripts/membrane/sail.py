@@ -84,7 +84,11 @@ def build(p):
     return mesh, sail
 
 
-def spin_up(sail, p):
+def look_away(_):
+    """What those do who do not watch."""
+
+
+def spin_up(sail, p, look=look_away):
     """Bring the folded sail to rest in the turning frame; returns what `scene.spin_up` does."""
     yade_classes.Omega().dt = SPIN_UP_STEP * sail.forces.criticalTimeStep()
     last = {"residual": 1.0}
@@ -95,13 +99,14 @@ def spin_up(sail, p):
         last["residual"] = min(last["residual"], residual)
         share = np.log(max(last["residual"], p.spin_up_tolerance)) / np.log(p.spin_up_tolerance)
         progress.show(float(share), f"t = {simulated:.3f} s  residual energy {residual:.1e}")
+        look(sail)
 
     return scene.spin_up(
         sail, p.omega, tolerance=p.spin_up_tolerance, damping=p.spin_up_damping, on_batch=show
     )
 
 
-def run(mesh, sail, p, recorder):
+def run(mesh, sail, p, recorder, look=look_away):
     """Release the sail and run it for p.duration, with rows and shapes at their intervals."""
     omega = yade_classes.Omega()
     omega.dt = p.dt
@@ -120,9 +125,10 @@ def run(mesh, sail, p, recorder):
         if row == rows or (between and row % max(1, between) == 0):
             recorder.shape(now)
         progress.update(now, f"  rate {measured['deployment_rate']:.3f}")
+        look(sail)
 
 
-def deploy(p, folder, pictures=True):
+def deploy(p, folder, pictures=True, look=look_away):
     """Do it all and write the results into `folder`.
 
     Parameters
@@ -132,6 +138,8 @@ def deploy(p, folder, pictures=True):
         Made if missing.
     pictures : bool
         Draw deployment.png and shapes.png.
+    look : callable, optional
+        Called with the MembraneScene now and then, as `window.Watch` is to show it.
 
     Returns
     -------
@@ -144,6 +152,7 @@ def deploy(p, folder, pictures=True):
     mesh, sail = build(p)
     folded = sail.positions()
     report = asdict(fold_report(mesh, folded))
+    look(sail)
     critical = sail.forces.criticalTimeStep()
     if p.dt > critical and not p.force_time_step:
         raise ValueError(
@@ -151,11 +160,11 @@ def deploy(p, folder, pictures=True):
             "(force_time_step overrules)"
         )
     clock.append(time.monotonic())
-    equilibrium = spin_up(sail, p)
+    equilibrium = spin_up(sail, p, look)
     clock.append(time.monotonic())
     recorder = Recorder(folder, mesh, sail, p.omega)
     try:
-        run(mesh, sail, p, recorder)
+        run(mesh, sail, p, recorder, look)
     except RuntimeError as error:
         raise RuntimeError(f"{error}. {save_last_good(sail, folder)}") from error
     finally:
