@@ -6,6 +6,7 @@ many times by `yade-batch table.txt scripts/deploy.py` with parameters as the ta
 """
 
 import argparse
+import contextlib
 import os
 import sys
 from dataclasses import fields
@@ -68,7 +69,8 @@ def main():
         print(f"  {folder / name}")
     if arguments.watch:
         print("Close the window to end.")
-        look.wait()
+        with contextlib.suppress(KeyboardInterrupt):  # Ctrl-C ends it, too
+            look.wait()
 
 
 main()
