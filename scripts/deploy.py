@@ -6,12 +6,13 @@ many times by `yade-batch table.txt scripts/deploy.py` with parameters as the ta
 """
 
 import argparse
+import contextlib
 import os
 import sys
 from dataclasses import fields
 from pathlib import Path
 
-from membrane import report, sail
+from membrane import report, sail, window
 from membrane.parameters import SailParameters, from_arguments, parse
 from yade import utils
 from yade.wrapper import Omega
@@ -29,6 +30,9 @@ def command_line():
     parser.add_argument("--no-report", action="store_true", help="write no report.html")
     parser.add_argument(
         "--animation", action="store_true", help="also render sail.mp4 and sail.gif (Xvfb, ffmpeg)"
+    )
+    parser.add_argument(
+        "--watch", action="store_true", help="show the run in YADE's window, and leave it open"
     )
     return parse(parser)
 
@@ -51,11 +55,13 @@ def main():
         overrides, case = batch_row()
         folder = arguments.out or (Path("out") / case.replace("/", "_") if case else Path("out"))
         parameters = from_arguments(arguments, overrides)
+        look = window.Watch() if arguments.watch else sail.look_away
         summary = sail.deploy(
             parameters,
             folder,
             pictures=not arguments.no_pictures,
             page=not arguments.no_report,
+            look=look,
         )
         films = []
         if arguments.animation:
@@ -78,6 +84,10 @@ def main():
     shown += [film.name for film in films]
     for name in [*shown, "history.csv", "summary.json", "shapes/film.pvd", "shapes/sides.pvd"]:
         print(f"  {folder / name}")
+    if arguments.watch:
+        print("Close the window to end.")
+        with contextlib.suppress(KeyboardInterrupt):  # Ctrl-C ends it, too
+            look.wait()
 
 
 main()

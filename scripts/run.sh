@@ -14,6 +14,7 @@ usage: scripts/run.sh COMMAND [options]
   sail FILE [options]       spin any sail: a crease pattern (.fold) or a mesh of gmsh (.msh);
                             options of scripts/sail.py
   miura [options]           a Miura-ori sheet from a FOLD file, unfolded by tip masses
+  watch [-j N] [options]    deploy the sail in YADE's own window; close the window to end
   test [-j N] [--full] [MODULE ...]
                             run the tests, or those of some modules; --full adds the long ones
   bench [options]           measure the speed beside YADE's own functors and LAMMPS: tables, and
@@ -37,13 +38,16 @@ END
 
 # Debian packages to build and run, to mesh other sails, to verify, to compare the speed with, and to format.
 run_packages=(yade python3-numpy python3-matplotlib python3-vtk9
-    g++ cmake make libboost-dev libeigen3-dev python3-dev libgtest-dev)
+    g++ cmake make libboost-dev libeigen3-dev python3-dev libglut-dev libgtest-dev)
 sail_packages=(python3-gmsh python3-meshio)
+test_packages=(xvfb xauth) # a display for the tests of drawing
 verify_packages=(calculix-ccx python3-scipy)
 bench_packages=(lammps openmpi-bin)
 animation_packages=(xvfb libgl1-mesa-dri ffmpeg)
 browser_packages=(chromium chromium-driver python3-selenium)
 format_packages=(clang-format black python3-flake8 shellcheck)
+
+no_display=(-n) # how YADE is told to do without
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 build=$root/build
@@ -164,7 +168,7 @@ run_yade() {
         mkdir -p "$HOME"
     fi
     export PYTHONPATH=$build/python${PYTHONPATH:+:$PYTHONPATH} PYTHONUNBUFFERED=1 MPLBACKEND=Agg
-    exec yade -n -x -j "$threads" "$script" "${options[@]}"
+    exec yade "${no_display[@]}" -x -j "$threads" "$script" "${options[@]}"
 }
 
 run_tests() {
@@ -219,8 +223,14 @@ sail | miura)
     compile
     run_yade "$root/scripts/$command.py" "$@"
     ;;
+watch)
+    [[ -n ${DISPLAY-} ]] || die "watch needs a display, and DISPLAY is not set"
+    compile
+    no_display=()
+    run_yade "$root/scripts/deploy.py" --watch "$@"
+    ;;
 test)
-    need "${sail_packages[@]}"
+    need "${sail_packages[@]}" "${test_packages[@]}"
     compile
     viewer_if_possible
     (need "${animation_packages[@]}" "${browser_packages[@]}") || true # tests say what they lack

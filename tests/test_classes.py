@@ -27,6 +27,7 @@ BASES = {
     "MembraneLedger": ("GlobalEngine", "Engine"),
     "MembraneTimeStepper": ("TimeStepper", "GlobalEngine", "Engine"),
     "MembraneWatch": ("GlobalEngine", "Engine"),
+    "GlExtra_Membrane": ("GlExtraDrawer", "Serializable"),
 }
 SETTINGS = {
     "MembraneMat": {"thickness": 1e-5, "young": 2e9, "label": "film"},
@@ -43,6 +44,7 @@ SETTINGS = {
     "MembraneLedger": {"gravity": Vector3(0, 0, -1), "dead": True},
     "MembraneTimeStepper": {"fraction": 0.3, "active": False},
     "MembraneWatch": {"tolerance": 0.3, "period": 7},
+    "GlExtra_Membrane": {"strainRange": 1e-4, "wire": True, "dead": True},
 }
 NUMBERS = ("Real", "Vector3r", "vector<Real>", "vector<Vector3r>")
 

@@ -11,7 +11,9 @@ import yade.config
 from membrane import _load
 from yade import wrapper
 
-TABLES = ("fields_of_body", "fields_of_interaction", "fields_of_engine", "fields_of_scene")
+TABLES = tuple(
+    f"fields_of_{thing}" for thing in ("body", "interaction", "engine", "drawer", "scene")
+)
 
 
 class OneFieldOff:

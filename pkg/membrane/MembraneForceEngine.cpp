@@ -70,6 +70,7 @@ void MembraneForceEngine::postLoad(MembraneForceEngine&) {
 }
 
 void MembraneForceEngine::action() {
+    const auto guarded = guard_.step();
     faults::raise(scene);
     if (preparedFor_ != scene) {
         prepare(*scene);
@@ -218,6 +219,11 @@ void MembraneForceEngine::advance(long steps) {
 
 Vector3r MembraneForceEngine::totalForce(int node) const {
     return scene->forces.getForce(membrane->bodyIds[node]);
+}
+
+::membrane::Points MembraneForceEngine::positionsNow(Scene& now) const {
+    const auto guarded = guard_.look();
+    return presentPositions(now);
 }
 
 vector<Vector3r> MembraneForceEngine::lastPositions() const {

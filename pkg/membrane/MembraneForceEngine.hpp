@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "Membrane.hpp"
+#include "StepGuard.hpp"
 #include "kernels/Sweep.hpp"
 #include <core/GlobalEngine.hpp>
 
@@ -22,6 +23,8 @@ public:
     virtual Vector3r positionSeen(int node) const { return sweep_.x.at(node); }
     virtual Vector3r velocitySeen(int node) const { return sweep_.v.at(node); }
     vector<Vector3r> lastPositions() const;
+    /// Present positions [m] of the nodes, for a thread other than the one that runs the scene: waits for a step's end.
+    ::membrane::Points positionsNow(Scene& now) const;
     vector<Vector3r> creaseForces() const { return ofNodes(&::membrane::Sweep::creaseForce); }
     vector<Vector3r> dampingForces() const { return ofNodes(&::membrane::Sweep::dampingForce); }
     vector<Vector3r> dragForces() const { return ofNodes(&::membrane::Sweep::dragForce); }
@@ -103,6 +106,7 @@ protected:
     /// Decides which nodes the sweep moves, and calls prepareSweep().
     virtual void arrange() { prepareSweep(vector<char>(states_.size(), false), 1); }
     virtual void gather();
+    virtual ::membrane::Points presentPositions(Scene& now) const { return membrane->positions(now); }
     virtual void computeForces();
     /// Builds the tables of the forces for nodes of which `owned` are moved by the sweep.
     void prepareSweep(const vector<char>& owned, int parts);
@@ -116,6 +120,7 @@ protected:
     [[noreturn]] void stopDiverged() const;
 
 private:
+    mutable StepGuard guard_;
     const Scene* preparedFor_ = nullptr;
     mutable vector<std::pair<const Engine*, const std::type_info*>> knownEngines_;
     mutable vector<MembraneLedger*> ledgers_; ///< of this engine, in the order of O.engines

@@ -319,6 +319,13 @@ void MembraneIntegrator::writeBack() {
     sinceExchange_ = 0;
 }
 
+::membrane::Points MembraneIntegrator::presentPositions(Scene& now) const {
+    ::membrane::Points x = MembraneForceEngine::presentPositions(now);
+    if (scene_ == &now && !bodiesCurrent_)
+        for (const int i : owned_) x[i] = sweep_.x.at(i);
+    return x;
+}
+
 Vector3r MembraneIntegrator::positionSeen(int node) const {
     // Where it was before it moved here; shared nodes are still there in the arrays.
     const bool moved = moved_ && !std::binary_search(shared_.begin(), shared_.end(), node);

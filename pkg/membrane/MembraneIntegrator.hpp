@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "MembraneForceEngine.hpp"
+#include <atomic>
 #include <pkg/dem/NewtonIntegrator.hpp>
 
 namespace yade {
@@ -53,13 +54,15 @@ protected:
     void gather() override;
     void computeForces() override;
     void findEngines(const Scene& in) const override;
+    ::membrane::Points presentPositions(Scene& now) const override;
 
 private:
     vector<shared_ptr<Body>> bodies_;
     vector<int> owned_, shared_; ///< nodes in the sweep, and those exchanged in every step
     vector<Vector3r> sharedSeenPositions_, sharedSeenVelocities_; ///< of the shared nodes, in the step before
     const Scene* scene_ = nullptr;                                ///< whose nodes the arrays hold
-    bool bodiesCurrent_ = true; ///< the bodies hold what the arrays hold, but for changes by hand
+    /// The bodies hold what the arrays hold, but for changes by hand; a thread that draws asks, too.
+    std::atomic<bool> bodiesCurrent_{true};
     bool forget_ = false;
     bool moved_ = false;                                   ///< whether the last step did
     mutable vector<shared_ptr<NewtonIntegrator>> newtons_; ///< in O.engines

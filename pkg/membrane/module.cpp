@@ -10,6 +10,7 @@
 #include <core/Scene.hpp>
 #include <lib/factory/ClassFactory.hpp>
 #include <pkg/common/NormShearPhys.hpp>
+#include <pkg/common/OpenGLRenderer.hpp>
 #include <pkg/common/Sphere.hpp>
 #include <pkg/dem/ScGeom.hpp>
 
@@ -82,6 +83,12 @@ py::dict fieldsOfEngine(const shared_ptr<Engine>& engine) {
     return seen;
 }
 
+py::dict fieldsOfDrawer(const shared_ptr<GlExtraDrawer>& drawer) {
+    py::dict seen;
+    seen["dead"] = drawer->dead;
+    return seen;
+}
+
 py::dict fieldsOfScene() {
     const shared_ptr<Scene> scene = Omega::instance().getScene();
     py::dict seen;
@@ -109,6 +116,7 @@ BOOST_PYTHON_MODULE(_membrane) {
     py::def("fields_of_body", fieldsOfBody);
     py::def("fields_of_interaction", fieldsOfInteraction);
     py::def("fields_of_engine", fieldsOfEngine);
+    py::def("fields_of_drawer", fieldsOfDrawer);
     py::def("fields_of_scene", fieldsOfScene);
     py::def("write_state", writeState);
 }

@@ -23,6 +23,7 @@ CLASSES = (
     "MembraneTimeStepper",
     "MembraneWatch",
 )
+DRAWERS = ("GlExtra_Membrane",)  # only where YADE has its 3D view
 
 
 def load():
@@ -34,11 +35,12 @@ def load():
         in one sentence, if there is no YADE, another version of it, or one laid out otherwise.
     """
     wrapper = _running_yade()
-    if not all(hasattr(wrapper, name) for name in CLASSES):
+    names = CLASSES + (DRAWERS if hasattr(wrapper, "GlExtraDrawer") else ())
+    if not all(hasattr(wrapper, name) for name in names):
         native = importlib.import_module("._membrane", __package__)
         check_layout(native, wrapper)
-        native.register_classes(list(CLASSES))
-    return {name: getattr(wrapper, name) for name in CLASSES}
+        native.register_classes(list(names))
+    return {name: getattr(wrapper, name) for name in names}
 
 
 def _running_yade():
@@ -116,6 +118,9 @@ def _round_trips(native, wrapper):
 
     engine = {"dead": True, "ompThreads": 3}
     yield "Engine", engine, native.fields_of_engine(wrapper.ForceResetter(**engine))
+
+    drawer = {"dead": True}
+    yield "GlExtraDrawer", drawer, native.fields_of_drawer(wrapper.GlExtraDrawer(**drawer))
 
     omega = wrapper.Omega()
     kept = omega.dt, omega.trackEnergy

@@ -83,7 +83,11 @@ def build(p):
     return mesh, sail
 
 
-def spin_up(sail, p):
+def look_away(_):
+    """What those do who do not watch."""
+
+
+def spin_up(sail, p, look=look_away):
     """Bring the folded sail to rest in the turning frame; returns what `scene.spin_up` does."""
     yade_classes.Omega().dt = SPIN_UP_STEP * sail.forces.criticalTimeStep()
     last = {"residual": 1.0}
@@ -94,20 +98,21 @@ def spin_up(sail, p):
         last["residual"] = min(last["residual"], residual)
         share = np.log(max(last["residual"], p.spin_up_tolerance)) / np.log(p.spin_up_tolerance)
         progress.show(float(share), f"t = {simulated:.3f} s  residual energy {residual:.1e}")
+        look(sail)
 
     return scene.spin_up(
         sail, p.omega, tolerance=p.spin_up_tolerance, damping=p.spin_up_damping, on_batch=show
     )
 
 
-def run(mesh, sail, p, recorder):
+def run(mesh, sail, p, recorder, look=look_away):
     """Release the sail and run it for p.duration, with rows and shapes at their intervals."""
     yade_classes.Omega().dt = p.dt
     scene.release(sail, p.omega, mesh.guide_nodes.ravel())
-    march(p, recorder, lambda measured: f"rate {measured['deployment_rate']:.3f}")
+    march(p, recorder, lambda measured: f"rate {measured['deployment_rate']:.3f}", look)
 
 
-def march(p, recorder, note):
+def march(p, recorder, note, look=look_away):
     """Run the released sail for p.duration; `note(row)` is shown beside the progress.
 
     `p` has dt, duration, history_interval and shapes_interval [s].
@@ -126,9 +131,10 @@ def march(p, recorder, note):
         if row == rows or (between and row % max(1, between) == 0):
             recorder.shape(now)
         progress.update(now, "  " + note(measured))
+        look(recorder.sail)
 
 
-def deploy(p, folder, pictures=True, page=True):
+def deploy(p, folder, pictures=True, page=True, look=look_away):
     """Do it all and write the results into `folder`.
 
     Parameters
@@ -140,6 +146,8 @@ def deploy(p, folder, pictures=True, page=True):
         Draw deployment.png and shapes.png.
     page : bool
         Write report.html; where the viewer is not built, say so and go on.
+    look : callable, optional
+        Called with the MembraneScene now and then, as `window.Watch` is to show it.
 
     Returns
     -------
@@ -152,6 +160,7 @@ def deploy(p, folder, pictures=True, page=True):
     mesh, sail = build(p)
     folded = sail.positions()
     folding = asdict(fold_report(mesh, folded))
+    look(sail)
     critical = sail.forces.criticalTimeStep()
     if p.dt > critical and not p.force_time_step:
         raise ValueError(
@@ -159,11 +168,11 @@ def deploy(p, folder, pictures=True, page=True):
             "(force_time_step overrules)"
         )
     clock.append(time.monotonic())
-    equilibrium = spin_up(sail, p)
+    equilibrium = spin_up(sail, p, look)
     clock.append(time.monotonic())
     recorder = Recorder(folder, mesh, sail, p.omega)
     try:
-        run(mesh, sail, p, recorder)
+        run(mesh, sail, p, recorder, look)
     except RuntimeError as error:
         raise RuntimeError(f"{error}. {save_last_good(sail, folder)}") from error
     finally:
