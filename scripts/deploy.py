@@ -6,15 +6,13 @@ many times by `yade-batch table.txt scripts/deploy.py` with parameters as the ta
 """
 
 import argparse
-import os
 import sys
-from dataclasses import fields
 from pathlib import Path
 
 from membrane import sail
-from membrane.parameters import SailParameters, add_arguments, from_arguments
+from membrane.batch import batch_row
+from membrane.parameters import add_arguments, from_arguments
 from yade import utils
-from yade.wrapper import Omega
 
 
 def command_line():
@@ -30,21 +28,10 @@ def command_line():
     return parser.parse_args()
 
 
-def batch_row():
-    """Parameters and name of this job of yade-batch; none outside a batch."""
-    if not os.environ.get("YADE_BATCH"):
-        return {}, None
-    defaults = {item.name: item.default for item in fields(SailParameters)}
-    utils.readParamsFromTable(noTableOk=False, **defaults)
-    from yade.params import table
-
-    return {name: getattr(table, name) for name in defaults}, Omega().tags["description"]
-
-
 def main():
     """Deploy the sail; sys.exit with one sentence if that cannot be."""
     arguments = command_line()
-    overrides, case = batch_row()
+    overrides, _, case = batch_row()
     folder = arguments.out or (Path("out") / case.replace("/", "_") if case else Path("out"))
     try:
         parameters = from_arguments(arguments, overrides)

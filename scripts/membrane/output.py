@@ -4,15 +4,22 @@
 import csv
 import json
 import math
-import os
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import VTK_LINE, VTK_TRIANGLE, vtkCellArray, vtkUnstructuredGrid
-from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
+
+from .files import replace_text, write_json
+
+
+
+class NotFinite(ValueError):
+    """A result that is no finite number."""
+
 
 CELL_TYPES = {2: VTK_LINE, 3: VTK_TRIANGLE}
 
@@ -32,14 +39,16 @@ class VtkSeries:
         Stem of the files; those of an earlier series of this name are overwritten.
     cells : (M, 2) or (M, 3) int
         Node ids of lines or of triangles, the same in all frames.
+    times : sequence of float
+        Times [s] of the frames to keep of an earlier series, which this one continues.
     """
 
-    def __init__(self, folder, name, cells):
+    def __init__(self, folder, name, cells, times=()):
         cells = np.asarray(cells)
         if cells.ndim != 2 or cells.shape[1] not in CELL_TYPES:
             raise ValueError(f"cells of shape {cells.shape}: must be (M, 2) or (M, 3)")
         self.folder, self.name, self.cells = Path(folder), name, cells
-        self.frames = []
+        self.frames = [(time, self._file(i)) for i, time in enumerate(times)]
         self.folder.mkdir(parents=True, exist_ok=True)
 
     def write(self, time, positions, cell_data=None):
@@ -71,11 +80,19 @@ class VtkSeries:
             array = numpy_to_vtk(_finite(label, values), deep=True)
             array.SetName(label)
             grid.GetCellData().AddArray(array)
-        path = self.folder / f"{self.name}_{len(self.frames):06d}.vtu"
+        path = self.folder / self._file(len(self.frames))
         _write_grid(grid, path)
         self.frames.append((float(time), path.name))
         self._write_collection()
         return path
+
+    def positions(self):
+        """Positions of the nodes [m] in each frame, (N, 3) double, read back from the files."""
+        return [_read_positions(self.folder / name) for _, name in self.frames]
+
+    def _file(self, number):
+        """Name of the file of a frame."""
+        return f"{self.name}_{number:06d}.vtu"
 
     def _write_collection(self):
         """Replace the .pvd file by one that lists all frames."""
@@ -85,7 +102,7 @@ class VtkSeries:
             for time, file in self.frames
         ]
         lines += ["</Collection>", "</VTKFile>", ""]
-        _replace(self.folder / f"{self.name}.pvd", "\n".join(lines))
+        replace_text(self.folder / f"{self.name}.pvd", "\n".join(lines))
 
 
 class HistoryWriter:
@@ -99,14 +116,24 @@ class HistoryWriter:
         The .csv file; overwritten.
     units : dict of str
         Unit by column name, in the order of the columns; "-" for none.
+    size : int, optional
+        Bytes to keep of an earlier table, which this one continues.
     """
 
-    def __init__(self, path, units):
+    def __init__(self, path, units, size=None):
         self.path, self.columns = Path(path), tuple(units)
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        _replace(self.path.with_suffix(".units.json"), json.dumps(units, indent=2) + "\n")
-        self._file = open(self.path, "w", newline="")
-        self._line(self.columns)
+        write_json(self.path.with_suffix(".units.json"), units)
+        self._file = open(self.path, "w" if size is None else "r+", newline="")
+        if size is None:
+            self._line(self.columns)
+        else:
+            self._file.truncate(size)
+            self._file.seek(size)
+
+    def size(self):
+        """Bytes written so far."""
+        return self.path.stat().st_size
 
     def write(self, values):
         """Append a line; `values` gives a finite number for every column by name.
@@ -114,7 +141,7 @@ class HistoryWriter:
         Raises
         ------
         ValueError
-            If a column is missing or unknown, or its value is no finite number.
+            If a column is missing or unknown; NotFinite, if its value is no finite number.
         """
         wrong = sorted(set(values) ^ set(self.columns))
         if wrong:
@@ -122,7 +149,7 @@ class HistoryWriter:
         row = [float(values[name]) for name in self.columns]
         for name, value in zip(self.columns, row):
             if not math.isfinite(value):
-                raise ValueError(f"{name} = {value}: must be finite, in {self.path.name}")
+                raise NotFinite(f"{name} = {value}: must be finite, in {self.path.name}")
         self._line(map(repr, row))
 
     def close(self):
@@ -175,16 +202,20 @@ def _write_grid(grid, path):
         raise OSError(f"{path}: could not be written")
 
 
+def _read_positions(path):
+    """Positions (N, 3) [m] in a .vtu file."""
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    points = reader.GetOutput().GetPoints()
+    if points is None:
+        raise OSError(f"{path}: could not be read")
+    return vtk_to_numpy(points.GetData()).copy()
+
+
 def _finite(name, values):
-    """`values` as a contiguous array; raise ValueError if one is not finite."""
+    """`values` as a contiguous array; raise NotFinite if one is not."""
     values = np.ascontiguousarray(values)
     if not np.all(np.isfinite(values)):
-        raise ValueError(f"{name}: has values that are not finite")
+        raise NotFinite(f"{name}: has values that are not finite")
     return values
-
-
-def _replace(path, text):
-    """Write a text file so that readers see either the old one or the new one."""
-    part = path.with_name(path.name + ".part")
-    part.write_text(text)
-    os.replace(part, path)

@@ -11,6 +11,11 @@ from math import inf, pi
 
 TABLE_1, TABLE_2, ASSUMED, RUN = "Table 1", "Table 2", "assumed", "run"
 
+# The cases that the paper compares, and how long it takes to see the largest lag of the tips and
+# the largest lead that follows [s].
+TABLE_2_CASES = {"alpha_crease": (100.0, 1000.0), "beta": (0.0, 3.0, 30.0)}
+TABLE_2_DURATION = 1.2
+
 
 def _parameter(default, unit, source, text, least=0.0, most=inf, above=False, choices=None):
     """A field with its unit, source, meaning and range; `above`: `least` itself is excluded."""

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from . import measures
-from .output import HistoryWriter, VtkSeries
+from .output import HistoryWriter, VtkSeries, read_history
 
 UNITS = {
     "time": "s",
@@ -47,6 +47,8 @@ class Recorder:
     sail : MembraneScene
     spin_rate : float
         Of the spool [rad/s].
+    state : dict, optional
+        What `state()` gave in a run that this one continues in the same folder.
 
     Attributes
     ----------
@@ -58,21 +60,32 @@ class Recorder:
         Their times [s].
     """
 
-    def __init__(self, folder, mesh, sail, spin_rate):
+    def __init__(self, folder, mesh, sail, spin_rate, state=None):
         self.mesh, self.sail, self.spin_rate = mesh, sail, spin_rate
-        self.rows, self.frames, self.frame_times = [], [], []
-        self._history = HistoryWriter(Path(folder) / "history.csv", UNITS)
+        state = state or {"history_size": None, "times": [], "first_lead": None, "phases": [0.0] * 4}
+        table, shapes = Path(folder) / "history.csv", Path(folder) / "shapes"
+        self._history = HistoryWriter(table, UNITS, state["history_size"])
         membrane = sail.membrane
         self._sides = np.array(membrane.sides)
         self._rest = np.array(membrane.restLengths)
         self._critical = np.array(membrane.criticalLengths)
         self._kinds = np.array(membrane.sideKinds)
         self._crease_rows = self._rows_of_creases(np.array(membrane.creases))
-        shapes = Path(folder) / "shapes"
-        self._film = VtkSeries(shapes, "film", mesh.triangles)
-        self._lines = VtkSeries(shapes, "sides", self._sides)
+        self.frame_times = list(state["times"])
+        self._film = VtkSeries(shapes, "film", mesh.triangles, self.frame_times)
+        self._lines = VtkSeries(shapes, "sides", self._sides, self.frame_times)
+        self.rows, self.frames = _rows(table), self._film.positions()
         # Of the tips against the spool [rad]: at the first row, where its time is 0, and since.
-        self._first_lead, self._phases = None, np.zeros(4)
+        self._first_lead, self._phases = state["first_lead"], np.array(state["phases"])
+
+    def state(self):
+        """What a Recorder needs to continue this one, ready for JSON."""
+        return {
+            "history_size": self._history.size(),
+            "times": self.frame_times,
+            "first_lead": self._first_lead,
+            "phases": self._phases.tolist(),
+        }
 
     def _rows_of_creases(self, creases):
         """Row in the membrane's sides of each crease (C,)."""
@@ -84,7 +97,7 @@ class Recorder:
         x = self.sail.last_positions()
         lead = measures.tip_azimuths(self.mesh, x) - self.spin_rate * time
         if self._first_lead is None:
-            self._first_lead = lead
+            self._first_lead = lead.tolist()
         self._phases = phases = measures.nearest_turn(lead - self._first_lead, self._phases)
         length = np.linalg.norm(x[self._sides[:, 1]] - x[self._sides[:, 0]], axis=1)
         ledger = self.sail.ledger
@@ -140,3 +153,9 @@ class Recorder:
     def close(self):
         """Close history.csv."""
         self._history.close()
+
+
+def _rows(table):
+    """Rows of a history.csv so far, each a dict."""
+    columns = read_history(table)
+    return [dict(zip(columns, row)) for row in zip(*columns.values())]

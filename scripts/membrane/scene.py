@@ -288,6 +288,54 @@ def set_engines(
     )
 
 
+def loaded():
+    """The MembraneScene of a scene that `set_engines` made and O.load brought back.
+
+    Its only membrane counts; `driven` lists bodies as its engines do.
+    """
+    found = {}
+    for engine in yade.Omega().engines:
+        found.setdefault(type(engine).__name__, engine)
+    forces = found.get("MembraneIntegrator") or found["MembraneForceEngine"]
+    rotation, turning = found["RotationEngine"], found["SpoolRotation"]
+    return MembraneScene(
+        forces.membrane,
+        forces,
+        found["CentrifugalField"],
+        rotation,
+        turning,
+        found["NewtonIntegrator"],
+        found["MembraneLedger"],
+        found.get("MembraneWatch"),
+        found["ForceResetter"],
+        [*turning.ids, *rotation.ids],
+    )
+
+
+def sort_interactions():
+    """Let YADE's loop go through interactions in the order of their ids, at some cost in time.
+
+    Then a saved scene goes on bit for bit also while tethers touch the spool.
+    """
+    for engine in yade.Omega().engines:
+        if isinstance(engine, yade.InteractionLoop):
+            engine.loopOnSortedInteractions = True
+
+
+def advance_loaded(sail, steps):
+    """As `advance`, right after a load, but checks O.dt only where a run without a stop would.
+
+    A loaded engine checks it in its first step, and the critical time step changes with the state.
+    """
+    forces, forced = sail.forces, sail.forces.forceTimeStep
+    forces.forceTimeStep = forced or yade.Omega().iter % forces.timeStepCheckPeriod != 0
+    try:
+        advance(1)
+    finally:
+        forces.forceTimeStep = forced
+    advance(steps - 1)
+
+
 def advance(steps):
     """Run `steps` steps. Raises what an engine raised."""
     scene = yade.Omega()
@@ -362,7 +410,18 @@ def residual_energy(sail, omega):
     return float(np.sum(mass * speed2) / (omega**2 * np.sum(mass * radius2)))
 
 
-def spin_up(sail, omega, *, tolerance=1e-6, damping=0.3, batch=2000, max_time=5.0, on_batch=None):
+def spin_up(
+    sail,
+    omega,
+    *,
+    tolerance=1e-6,
+    damping=0.3,
+    batch=2000,
+    max_time=5.0,
+    on_batch=None,
+    begun=None,
+    keep=None,
+):
     """Bring the sail to rest in a frame that turns at `omega` [rad/s] (MODEL, folding step 3).
 
     Parameters
@@ -379,6 +438,10 @@ def spin_up(sail, omega, *, tolerance=1e-6, damping=0.3, batch=2000, max_time=5.
         Simulated time [s] after which to give up with RuntimeError.
     on_batch : callable, optional
         Called with (simulated time, residual) after each batch.
+    begun : dict, optional
+        What `keep` was given when the scene was saved that is now to go on.
+    keep : callable, optional
+        Called after each batch but the last, with a dict that a later `begun` takes.
 
     Returns
     -------
@@ -392,14 +455,17 @@ def spin_up(sail, omega, *, tolerance=1e-6, damping=0.3, batch=2000, max_time=5.
     sail.field.omega = omega
     sail.newton.damping = damping
     sail.resetter.dead = False
-    steps, calm, residual = 0, 0, float("inf")
+    steps, calm = (begun["steps"], begun["calm"]) if begun else (0, 0)
+    go_on = (lambda count: advance_loaded(sail, count)) if begun else advance
+    residual = float("inf")
     while calm < 2:
         if steps * scene.dt > max_time:
             raise RuntimeError(
                 f"spin-up found no equilibrium in {max_time} s: residual energy {residual:.3g}, "
                 f"wanted {tolerance:.3g}"
             )
-        advance(batch)
+        go_on(batch)
+        go_on = advance
         steps += batch
         residual = residual_energy(sail, omega)
         if not residual < 10:
@@ -410,6 +476,8 @@ def spin_up(sail, omega, *, tolerance=1e-6, damping=0.3, batch=2000, max_time=5.
         calm = calm + 1 if residual < tolerance else 0
         if on_batch:
             on_batch(steps * scene.dt, residual)
+        if keep and calm < 2:
+            keep({"steps": steps, "calm": calm})
     return {"time": steps * scene.dt, "steps": steps, "residual": residual}
 
 
