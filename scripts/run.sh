@@ -19,6 +19,11 @@ usage: scripts/run.sh COMMAND [options]
   parts [options]           what each part of the model changes and costs, into reference/parts.csv
   chart [options]           accuracy against time for every path, step and mesh, into
                             reference/chart.csv and chart.png
+  sweep [-j N] [options]    run the paper's Table 2, or a grid of one's own, N cases at once, and
+                            report into out/sweep; run again, it goes on where it was stopped;
+                            options by `scripts/run.sh sweep --help`
+  case --out DIR [options]  one deployment that leaves all its results or none and, run again
+                            after it was stopped, goes on; options by `scripts/run.sh case --help`
   build                     compile the plugin into build/python
   format [--check]          format C++ and Python sources; --check changes nothing and fails where
                             a file is not formatted or a linter complains
@@ -34,6 +39,7 @@ run_packages=(yade python3-numpy python3-matplotlib python3-vtk9
     g++ cmake make libboost-dev libeigen3-dev python3-dev libgtest-dev)
 verify_packages=(calculix-ccx python3-scipy)
 bench_packages=(lammps openmpi-bin)
+sweep_packages=(python3-jinja2)
 format_packages=(clang-format black python3-flake8 shellcheck)
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
@@ -109,6 +115,16 @@ compile() {
     exec 9>&-
 }
 
+# Sets what YADE needs to run and to find the plugin.
+set_environment() {
+    # YADE writes its settings below HOME, and stops without one.
+    if [[ ! -w ${HOME:-/nonexistent} ]]; then
+        export HOME=$build/home
+        mkdir -p "$HOME"
+    fi
+    export PYTHONPATH=$build/python${PYTHONPATH:+:$PYTHONPATH} PYTHONUNBUFFERED=1 MPLBACKEND=Agg
+}
+
 # run_yade SCRIPT [-j N] [options]: runs a script in YADE, with the other options as its sys.argv[1:].
 run_yade() {
     local script=$1 threads=1
@@ -126,12 +142,7 @@ run_yade() {
         shift || true
     done
     [[ $threads =~ ^[1-9][0-9]*$ ]] || die "-j takes the number of threads, at least 1, not '$threads'"
-    # YADE writes its settings below HOME, and stops without one.
-    if [[ ! -w ${HOME:-/nonexistent} ]]; then
-        export HOME=$build/home
-        mkdir -p "$HOME"
-    fi
-    export PYTHONPATH=$build/python${PYTHONPATH:+:$PYTHONPATH} PYTHONUNBUFFERED=1 MPLBACKEND=Agg
+    set_environment
     exec yade -n -x -j "$threads" "$script" "${options[@]}"
 }
 
@@ -194,7 +205,13 @@ verify)
     compile
     run_yade "$root/scripts/verify.py" "$@"
     ;;
-stability | parts | chart)
+sweep)
+    need "${sweep_packages[@]}"
+    compile
+    set_environment
+    exec python3 "$root/scripts/sweep.py" run "$@"
+    ;;
+case | stability | parts | chart)
     compile
     run_yade "$root/scripts/$command.py" "$@"
     ;;

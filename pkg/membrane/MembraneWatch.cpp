@@ -84,7 +84,7 @@ void MembraneWatch::keep() {
         newerBodies.insert(newerBodies.end(), turned.coeffs().data(), turned.coeffs().data() + 4);
     }
     newerLedger = shared_ptr<MembraneLedger>(new MembraneLedger(*ledger));
-    newerLedger->forces.reset(); // else a save would fetch the present lengths into it
+    newerLedger->forces.reset();         // else a save would fetch the present lengths into it
     newerTime = scene->time + scene->dt; // the integrator has moved the bodies already
 }
 
@@ -109,6 +109,8 @@ Real MembraneWatch::restore() {
     ledger->forces = forces;
     forces->forgetLengths();
     scene->time = time;
+    scene->subStep = -1; // the state lies between two steps, and not within the one that was stopped
+    scene->speed = 0.;   // of the computer; two saves of one state are to be the same
     scene->forces.reset(scene->iter);
     lowest.clear();
     looked = -1;

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """One case, whole or not at all: a folder that gets its name only when everything is in it.
 
-The case runs in a folder beside it, `NAME.part`, where it saves itself now and then; run again after
-it was killed, it goes on from there. What it leaves is, byte for byte, what it would have left had
-it never been stopped, but for wall_time.json.
+The case runs in a folder beside it, `NAME.part`, where it saves itself now and then; run again
+after it was killed, it goes on from there. What it leaves is, byte for byte, what it would have
+left had it never been stopped, but for wall_time.json.
 """
 
 import fcntl

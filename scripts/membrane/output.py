@@ -2,7 +2,6 @@
 """Files of results: ParaView time series of a mesh, and a table of scalars over time."""
 
 import csv
-import json
 import math
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
@@ -14,7 +13,6 @@ from vtkmodules.vtkCommonDataModel import VTK_LINE, VTK_TRIANGLE, vtkCellArray, 
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
 
 from .files import replace_text, write_json
-
 
 
 class NotFinite(ValueError):

@@ -155,16 +155,19 @@ def describe(item):
     return f"{about['text']}{unit} ({about['source']}{extent}; default {item.default})"
 
 
-def add_arguments(parser):
-    """Add one option for every parameter to an argparse parser, grouped by source."""
+def add_arguments(parser, several=None):
+    """Add one option for every parameter to an argparse parser, grouped by source.
+
+    `several` (a dict) gives the defaults of those parameters that take one value or more.
+    """
     for source in (TABLE_1, TABLE_2, ASSUMED, RUN):
         group = parser.add_argument_group(f"parameters: {source}")
         for item in fields(SailParameters):
             if item.metadata["source"] == source:
-                _add_argument(group, item)
+                _add_argument(group, item, (several or {}).get(item.name))
 
 
-def _add_argument(group, item):
+def _add_argument(group, item, several):
     flag, text = "--" + item.name.replace("_", "-"), describe(item).replace("%", "%%")
     if item.type is bool:
         group.add_argument(
@@ -173,9 +176,12 @@ def _add_argument(group, item):
         return
     choices = item.metadata["choices"]
     metavar = None if choices else item.metadata["unit"].replace("-", "N")
-    group.add_argument(
-        flag, type=item.type, default=item.default, choices=choices, metavar=metavar, help=text
-    )
+    more = {"default": item.default}
+    if several:
+        shown = " ".join(f"{value:g}" for value in several)
+        text = text.replace(f"default {item.default}", f"one or more; default {shown}")
+        more = {"default": list(several), "nargs": "+"}
+    group.add_argument(flag, type=item.type, choices=choices, metavar=metavar, help=text, **more)
 
 
 def from_arguments(arguments, overrides=None):

@@ -62,7 +62,12 @@ class Recorder:
 
     def __init__(self, folder, mesh, sail, spin_rate, state=None):
         self.mesh, self.sail, self.spin_rate = mesh, sail, spin_rate
-        state = state or {"history_size": None, "times": [], "first_lead": None, "phases": [0.0] * 4}
+        state = state or {
+            "history_size": None,
+            "times": [],
+            "first_lead": None,
+            "phases": [0.0] * 4,
+        }
         table, shapes = Path(folder) / "history.csv", Path(folder) / "shapes"
         self._history = HistoryWriter(table, UNITS, state["history_size"])
         membrane = sail.membrane

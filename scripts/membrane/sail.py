@@ -164,10 +164,7 @@ def run(sail, p, recorder, begun=None, keep=None):
         recorder.history(0.0)
         recorder.shape(0.0)
     for row in range((begun or 0) + 1, rows + 1):
-        if begun is not None and row == begun + 1:
-            scene.advance_loaded(sail, stride)
-        else:
-            scene.advance(stride)
+        scene.advance(stride, sail.forces if row - 1 == begun else None)
         now = row * stride * p.dt
         measured = recorder.history(now)
         if row == rows or (between and row % max(1, between) == 0):
@@ -259,6 +256,8 @@ def deploy(p, folder, pictures=True, checkpoints=None):
     except (RuntimeError, NotFinite) as error:
         time_reached = (yade_classes.Omega().iter - facts["release_step"]) * p.dt
         saying = save_last_good(sail, folder)
+        if pictures and recorder.rows:
+            draw(mesh, recorder, recorder.columns(), folder)
         raise Diverged(RUN, time_reached, str(error), saying) from error
     finally:
         recorder.close()
@@ -330,6 +329,7 @@ def save_last_good(sail, folder):
     except RuntimeError as error:
         return f"No good state could be saved ({error})"
     path = Path(folder) / LAST_GOOD
+    scene.renew_collider()
     tags = yade_classes.Omega().tags
     for name in tags.keys():
         tags[name] = ""  # else two files of one state would differ by day and machine

@@ -229,15 +229,7 @@ def set_engines(
     if touching:
         for body in (scene.bodies[i] for i in touching):
             body.bounded, body.mask = True, spool.TETHER_MASK
-        bounds = [yade.Bo1_Sphere_Aabb(), yade.Bo1_Facet_Aabb()]
-        collider = [
-            yade.InsertionSortCollider(
-                bounds,
-                verletDist=spool.VERLET_DISTANCE,
-                targetInterv=-1,
-                avoidSelfInteractionMask=spool.NO_SELF_CONTACT,
-            )
-        ]
+        collider = [_collider()]
         geometry.append(yade.Ig2_Facet_Sphere_ScGeom())
         physics.append(yade.Ip2_FrictMat_FrictMat_FrictPhys())
         laws.append(yade.Law2_ScGeom_FrictPhys_CundallStrack())
@@ -288,6 +280,26 @@ def set_engines(
     )
 
 
+def _collider():
+    """The collider of tethers and spool."""
+    return yade.InsertionSortCollider(
+        [yade.Bo1_Sphere_Aabb(), yade.Bo1_Facet_Aabb()],
+        verletDist=spool.VERLET_DISTANCE,
+        targetInterv=-1,
+        avoidSelfInteractionMask=spool.NO_SELF_CONTACT,
+    )
+
+
+def renew_collider():
+    """Put a new collider in the place of the one that `set_engines` made, if any.
+
+    It counts how often it was loaded, so that else two saves of one state would differ.
+    """
+    omega = yade.Omega()
+    old = yade.InsertionSortCollider
+    omega.engines = [_collider() if isinstance(e, old) else e for e in omega.engines]
+
+
 def loaded():
     """The MembraneScene of a scene that `set_engines` made and O.load brought back.
 
@@ -322,26 +334,19 @@ def sort_interactions():
             engine.loopOnSortedInteractions = True
 
 
-def advance_loaded(sail, steps):
-    """As `advance`, right after a load, but checks O.dt only where a run without a stop would.
+def advance(steps, resumed=None):
+    """Run `steps` steps. Raises what an engine raised.
 
-    A loaded engine checks it in its first step, and the critical time step changes with the state.
+    `resumed`: the forces engine of a scene that was just loaded. It checks O.dt in its first step
+    only if it would have done so without a stop: the critical time step changes with the state.
     """
-    forces, forced = sail.forces, sail.forces.forceTimeStep
-    forces.forceTimeStep = forced or yade.Omega().iter % forces.timeStepCheckPeriod != 0
-    try:
-        advance(1)
-    finally:
-        forces.forceTimeStep = forced
-    advance(steps - 1)
-
-
-def advance(steps):
-    """Run `steps` steps. Raises what an engine raised."""
     scene = yade.Omega()
     scene.stopAtIter = scene.iter + steps  # lets a MembraneIntegrator know when the run ends
     try:
         # O.run() would lose what an engine raises before O.wait() is called.
+        if resumed and steps > 0:
+            _first_step(resumed)
+            steps -= 1
         _plugin["MembraneForceEngine"].advance(steps)
     except BaseException:
         for engine in scene.engines:
@@ -350,6 +355,16 @@ def advance(steps):
         raise
     finally:
         scene.stopAtIter = 0
+
+
+def _first_step(forces):
+    """Run the first step after a load."""
+    forced = forces.forceTimeStep
+    forces.forceTimeStep = forced or yade.Omega().iter % forces.timeStepCheckPeriod != 0
+    try:
+        forces.advance(1)
+    finally:
+        forces.forceTimeStep = forced
 
 
 def compute_forces(sail):
@@ -456,7 +471,7 @@ def spin_up(
     sail.newton.damping = damping
     sail.resetter.dead = False
     steps, calm = (begun["steps"], begun["calm"]) if begun else (0, 0)
-    go_on = (lambda count: advance_loaded(sail, count)) if begun else advance
+    resumed = sail.forces if begun else None
     residual = float("inf")
     while calm < 2:
         if steps * scene.dt > max_time:
@@ -464,8 +479,8 @@ def spin_up(
                 f"spin-up found no equilibrium in {max_time} s: residual energy {residual:.3g}, "
                 f"wanted {tolerance:.3g}"
             )
-        go_on(batch)
-        go_on = advance
+        advance(batch, resumed)
+        resumed = None
         steps += batch
         residual = residual_energy(sail, omega)
         if not residual < 10:
