@@ -11,13 +11,15 @@ TEMPLATE = """\
 <meta name="viewport" content="width=device-width">
 <title>Sweep over {{ axes | join(" and ") }}</title>
 <style>
-body { font: 15px/1.45 sans-serif; color: #222; max-width: 68rem; margin: 2rem auto; padding: 0 1rem; }
+body { font: 15px/1.45 sans-serif; color: #222; max-width: 68rem;
+       margin: 2rem auto; padding: 0 1rem; }
 h1 { font-size: 1.5rem; } h2 { font-size: 1.15rem; margin-top: 2rem; }
 figure { margin: 1rem 0; } figure img { max-width: 100%; }
 figcaption { color: #555; font-size: 0.9rem; }
 .wide { overflow-x: auto; }
 table { border-collapse: collapse; font-size: 0.85rem; }
-th, td { padding: 0.25rem 0.6rem; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top; }
+th, td { padding: 0.25rem 0.6rem; border-bottom: 1px solid #ddd;
+         text-align: left; vertical-align: top; }
 th { background: #f4f4f2; font-weight: 600; } th small { font-weight: 400; color: #666; }
 td:first-child { white-space: nowrap; }
 td.number { text-align: right; font-variant-numeric: tabular-nums; }
@@ -38,13 +40,14 @@ tr.failed td, tr.killed td, tr.running td, tr.missing td { background: #fbe6e6; 
 
 {% if others %}
 <h2>Cases that are not complete</h2>
-<p>A diverged case is a result: run again it diverges again. Times in the reasons are on YADE's clock, which runs
-through the spin-up; those in the table count from the release. All other cases are missing; the sweep's
-command runs them, and them alone.</p>
+<p>A diverged case is a result: run again it diverges again. Times in the reasons are on YADE's
+clock, which runs through the spin-up; those in the table count from the release. All other cases
+are missing; the sweep's command runs them, and them alone.</p>
 <div class="wide"><table>
 <tr><th>case</th><th>outcome</th><th>at <small>[s]</small></th><th>because</th></tr>
 {% for status in others %}
-<tr class="{{ status.state | replace("not begun", "missing") }}"><td>{{ status.name }}</td><td>{{ status.state }}</td>
+<tr class="{{ status.state | replace("not begun", "missing") }}">
+<td>{{ status.name }}</td><td>{{ status.state }}</td>
 <td class="number">{% if status.state == "diverged" %}
 {{- "in the spin-up" if status.time is none else "%.4g" % status.time }}{% endif %}</td>
 <td>{{ status.reason }}</td></tr>
@@ -59,13 +62,15 @@ command runs them, and them alone.</p>
 {%- if unit != "-" %} <small>[{{ unit }}]</small>{% endif %}</th>{% endfor %}</tr>
 {% for case in cases %}
 <tr class="{{ case.state | replace("not begun", "missing") }}">
-<td>{% if case.place %}<a href="{{ case.place }}/">{{ case.name }}</a>{% else %}{{ case.name }}{% endif %}</td>
+<td>{% if case.place %}<a href="{{ case.place }}/">{{ case.name }}</a>
+{%- else %}{{ case.name }}{% endif %}</td>
 <td>{{ case.state }}</td>
 {%- for value in case["values"] %}<td class="number">{{ value or "–" }}</td>{% endfor %}</tr>
 {% endfor %}
 </table></div>
 <ul>
-{% for name, unit, meaning in columns if meaning %}<li><b>{{ name | replace("_", " ") }}</b>: {{ meaning }}</li>
+{% for name, unit, meaning in columns if meaning %}
+<li><b>{{ name | replace("_", " ") }}</b>: {{ meaning }}</li>
 {% endfor %}
 </ul>
 
@@ -73,7 +78,8 @@ command runs them, and them alone.</p>
 <h2>Shapes</h2>
 <div class="shapes">
 {% for case in cases if case.shapes %}
-<figure><a href="{{ case.shapes }}"><img src="{{ case.shapes }}" loading="lazy" alt="Shapes of {{ case.name }}"></a>
+<figure><a href="{{ case.shapes }}">
+<img src="{{ case.shapes }}" loading="lazy" alt="Shapes of {{ case.name }}"></a>
 <figcaption>{{ case.name }}</figcaption></figure>
 {% endfor %}
 </div>
@@ -83,11 +89,16 @@ command runs them, and them alone.</p>
 <div class="wide"><table>
 <tr><th>parameter</th><th>value</th><th>unit</th><th>meaning</th><th>from</th></tr>
 {% for name, value, unit, meaning, source in common %}
-<tr><td>{{ name }}</td><td class="number">{{ value }}</td><td>{{ unit }}</td><td>{{ meaning }}</td><td>{{ source }}</td></tr>
+<tr><td>{{ name }}</td><td class="number">{{ value }}</td><td>{{ unit }}</td>
+<td>{{ meaning }}</td><td>{{ source }}</td></tr>
 {% endfor %}
 </table></div>
 
-<p>Made with {% for name, value in versions.items() %}{{ name }} {{ value }}{{ ", " if not loop.last }}{% endfor %}.</p>
+<p>Made with
+{% for name, value in versions.items() %}
+{{ name }} {{ value }}{{ "." if loop.last else "," }}
+{% endfor %}
+</p>
 </body>
 </html>
 """
