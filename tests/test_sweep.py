@@ -314,6 +314,21 @@ class TestReport(SweepTest):
         self.assertEqual(status, 0, said)
         self.assertIn("mine diverged", said)
 
+    def test_large_grid_is_drawn_in_panels(self):
+        folder = scratch() / "large"
+        content = json.loads((diverged() / "case.json").read_text())
+        alphas = (1.0, 10.0, 100.0, 1e3, 1e4)
+        for name, p in grid.grid(SailParameters(), alphas, [0.0, 3.0, 30.0]).items():
+            (folder / name).mkdir(parents=True)
+            shutil.copy(diverged() / "history.csv", folder / name)
+            told = {**content, "outcome": "complete", "parameters": p.as_dict()}
+            (folder / name / "case.json").write_text(json.dumps(told))
+        status, said = self.report(folder)
+        self.assertEqual(status, 0, said)
+        self.assertIn("15 of 15 cases are complete", said)
+        for name in ("deployment_rate.png", "phase_difference.png", "swing.png"):
+            self.assertEqual((folder / name).read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+
     def test_folder_without_cases_is_a_sentence(self):
         folder = scratch() / "empty"
         folder.mkdir()

@@ -15,7 +15,7 @@ TOGETHER = 12  # curves in one panel at most
 COLOURS = ("#31688e", "#e07b00", "#35a05f", "#b5367a", "#7a5fb0", "#8c6d31")  # of beta
 
 
-def draw_curves(axes, curves):
+def draw_curves(axes, curves, betas=()):
     """Draw curves of cases: the colour tells beta, the kind of line alpha_c.
 
     Parameters
@@ -23,19 +23,22 @@ def draw_curves(axes, curves):
     axes : matplotlib Axes
     curves : dict
         (times (S,), values (S,)) by (alpha_c, beta).
+    betas : sequence of float, optional
+        All betas that get a colour of their own, in turn; default: those of `curves`.
 
     Returns
     -------
     dict of matplotlib lines by (alpha_c, beta)
     """
-    alphas, betas = (sorted(set(values)) for values in zip(*curves))
+    alphas = sorted({alpha for alpha, _ in curves})
+    betas = betas or sorted({beta for _, beta in curves})
     lines = {}
     for (alpha, beta), (times, values) in curves.items():
         (lines[alpha, beta],) = axes.plot(
             times,
             values,
             color=_colour(betas, beta),
-            linestyle=STYLES[alphas.index(alpha) % len(STYLES)],
+            linestyle=STYLES[alphas.index(alpha) % len(STYLES)] if len(alphas) > 1 else "-",
             label=f"{ALPHA} = {alpha:g}, {BETA} = {beta:g}",
         )
     return lines
@@ -66,22 +69,24 @@ def plot_curves(curves, ends, label, path):
     groups = [alphas] if together else [[alpha] for alpha in alphas]
     columns = min(3, len(groups))
     rows = -(-len(groups) // columns)
-    size = (8.5, 4.6) if together else (4.2 * columns + 0.6, 3.4 * rows)
+    size = (8.5, 4.6) if together else (3.6 * columns + 1.4, 3.2 * rows)
     figure = Figure(figsize=size, layout="constrained")
     panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel()
     for panel in panels[len(groups) :]:
         panel.set_axis_off()
+    handles = {}
     for number, (panel, group) in enumerate(zip(panels, groups)):
         chosen = {case: curve for case, curve in curves.items() if case[0] in group}
-        lines = draw_curves(panel, chosen)
-        marked = None
-        for case in [case for case in chosen if case in ends]:
+        lines = draw_curves(panel, chosen, sorted({beta for _, beta in curves}))
+        for (alpha, beta), line in lines.items():
+            handles[line.get_label() if together else f"{BETA} = {beta:g}"] = line
+        for case in (case for case in chosen if case in ends):
             times, values = chosen[case]
             colour = lines[case].get_color()
-            (marked,) = panel.plot(times[-1], values[-1], "x", color=colour, markersize=9, mew=2)
-        if marked:
-            marked.set_label("diverged")
-        panel.set_title("" if together else f"{ALPHA} = {group[0]:g}", fontsize=10)
+            (cross,) = panel.plot(times[-1], values[-1], "x", color=colour, markersize=9, mew=2)
+            handles["diverged"] = cross
+        if not together:
+            panel.set_title(f"{ALPHA} = {group[0]:g}", fontsize=10)
         if number % columns == 0:
             panel.set_ylabel(label)
         if number + columns >= len(groups):
@@ -89,16 +94,14 @@ def plot_curves(curves, ends, label, path):
             panel.tick_params(labelbottom=True)
         panel.grid(alpha=0.3)
         panel.margins(x=0.01)
-        if together:
-            panel.legend(frameon=False, fontsize=8, loc="upper left", bbox_to_anchor=(1, 1))
-        elif number == 0:
-            figure.legend(
-                [lines[case] for case in lines],
-                [f"{BETA} = {case[1]:g}" for case in lines],
-                loc="outside right upper",
-                frameon=False,
-                fontsize=8,
-            )
+    panels[columns - 1].legend(
+        handles.values(),
+        handles,
+        frameon=False,
+        fontsize=8,
+        loc="upper left",
+        bbox_to_anchor=(1, 1),
+    )
     figure.savefig(path, dpi=DPI)
 
 
