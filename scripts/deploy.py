@@ -7,15 +7,12 @@ many times by `yade-batch table.txt scripts/deploy.py` with parameters as the ta
 
 import argparse
 import contextlib
-import os
 import sys
-from dataclasses import fields
 from pathlib import Path
 
 from membrane import report, sail, window
-from membrane.parameters import SailParameters, from_arguments, parse
-from yade import utils
-from yade.wrapper import Omega
+from membrane.batch import batch_row
+from membrane.parameters import from_arguments, parse
 
 
 def command_line():
@@ -37,22 +34,11 @@ def command_line():
     return parse(parser)
 
 
-def batch_row():
-    """Parameters and name of this job of yade-batch; none outside a batch."""
-    if not os.environ.get("YADE_BATCH"):
-        return {}, None
-    defaults = {item.name: item.default for item in fields(SailParameters)}
-    utils.readParamsFromTable(noTableOk=False, **defaults)
-    from yade.params import table
-
-    return {name: getattr(table, name) for name in defaults}, Omega().tags["description"]
-
-
 def main():
     """Deploy the sail; sys.exit with one sentence if that cannot be."""
     try:
         arguments = command_line()
-        overrides, case = batch_row()
+        overrides, _, case = batch_row()
         folder = arguments.out or (Path("out") / case.replace("/", "_") if case else Path("out"))
         parameters = from_arguments(arguments, overrides)
         look = window.Watch() if arguments.watch else sail.look_away

@@ -26,6 +26,11 @@ usage: scripts/run.sh COMMAND [options]
   chart [options]           accuracy against time for every path, step and mesh, into
                             reference/chart.csv and chart.png
   viewer                    bundle the viewer of report.html, which npm's registry holds parts of
+  sweep [-j N] [options]    run the paper's Table 2, or a grid of one's own, N cases at once, and
+                            report into out/sweep; run again, it goes on where it was stopped;
+                            options by `scripts/run.sh sweep --help`
+  case --out DIR [options]  one deployment that leaves all its results or none and, run again
+                            after it was stopped, goes on; options by `scripts/run.sh case --help`
   build                     compile the plugin into build/python
   format [--check]          format C++ and Python sources; --check changes nothing and fails where
                             a file is not formatted or a linter complains
@@ -45,6 +50,7 @@ verify_packages=(calculix-ccx python3-scipy)
 bench_packages=(lammps openmpi-bin)
 animation_packages=(xvfb libgl1-mesa-dri ffmpeg)
 browser_packages=(chromium chromium-driver python3-selenium)
+sweep_packages=(python3-jinja2)
 format_packages=(clang-format black python3-flake8 shellcheck)
 
 no_display=(-n) # how YADE is told to do without
@@ -144,6 +150,15 @@ bundle_viewer() (
 
 # The viewer, if it can be had; all but report.html works without.
 viewer_if_possible() { bundle_viewer || (($? == 1)) || die "the viewer could not be bundled"; }
+# Sets what YADE needs to run and to find the plugin.
+set_environment() {
+    # YADE writes its settings below HOME, and stops without one.
+    if [[ ! -w ${HOME:-/nonexistent} ]]; then
+        export HOME=$build/home
+        mkdir -p "$HOME"
+    fi
+    export PYTHONPATH=$build/python${PYTHONPATH:+:$PYTHONPATH} PYTHONUNBUFFERED=1 MPLBACKEND=Agg
+}
 
 # run_yade SCRIPT [-j N] [options]: runs a script in YADE, with the other options as its sys.argv[1:].
 run_yade() {
@@ -162,12 +177,7 @@ run_yade() {
         shift || true
     done
     [[ $threads =~ ^[1-9][0-9]*$ ]] || die "-j takes the number of threads, at least 1, not '$threads'"
-    # YADE writes its settings below HOME, and stops without one.
-    if [[ ! -w ${HOME:-/nonexistent} ]]; then
-        export HOME=$build/home
-        mkdir -p "$HOME"
-    fi
-    export PYTHONPATH=$build/python${PYTHONPATH:+:$PYTHONPATH} PYTHONUNBUFFERED=1 MPLBACKEND=Agg
+    set_environment
     exec yade "${no_display[@]}" -x -j "$threads" "$script" "${options[@]}"
 }
 
@@ -230,7 +240,7 @@ watch)
     run_yade "$root/scripts/deploy.py" --watch "$@"
     ;;
 test)
-    need "${sail_packages[@]}" "${test_packages[@]}"
+    need "${sail_packages[@]}" "${sweep_packages[@]}" "${test_packages[@]}"
     compile
     viewer_if_possible
     (need "${animation_packages[@]}" "${browser_packages[@]}") || true # tests say what they lack
@@ -246,7 +256,13 @@ verify)
     compile
     run_yade "$root/scripts/verify.py" "$@"
     ;;
-stability | parts | chart)
+sweep)
+    need "${sweep_packages[@]}"
+    compile
+    set_environment
+    exec python3 "$root/scripts/sweep.py" run "$@"
+    ;;
+case | stability | parts | chart)
     compile
     run_yade "$root/scripts/$command.py" "$@"
     ;;

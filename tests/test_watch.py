@@ -106,6 +106,37 @@ class TestRestore(WatchTest):
         scene.advance(500)
         self.assertLess(self.sail.ledger.total, 1.01 * before)
 
+    def test_saved_watch_stops_at_the_same_step_with_the_same_words_and_state(self):
+        for calm in (10, 250):  # steps: with the states that were saved, and with later ones
+            self.make(0.5, speed=1e-3, zeta=0.02)
+            scene.advance(450)
+            saved = O.time
+            for form in (".xml", ".yade", ":memory:"):
+                O.save(self.place(form), quiet=True)
+            expected = self.end(calm)
+            self.assertEqual(expected[2] < saved, calm == 10)
+            for form in (".xml", ".yade", ":memory:"):
+                O.reset()
+                O.load(self.place(form), quiet=True)
+                found = self.end(calm)
+                with self.subTest(calm=calm, form=form):
+                    self.assertEqual(found[:-1], expected[:-1])
+                    np.testing.assert_array_equal(found[-1], expected[-1])
+
+    def place(self, form):
+        return ":memory:watch" if form == ":memory:" else str(scratch() / f"watch{form}")
+
+    def end(self, calm):
+        """The stop by a step too long after `calm` steps: when, its words, and what comes back."""
+        scene.advance(calm)
+        O.dt *= 2.08
+        steps, words = self.stopped(300)
+        (watch,) = [e for e in O.engines if isinstance(e, membrane.MembraneWatch)]
+        time, ledger = watch.restore(), watch.ledger
+        book = [ledger.kinetic, ledger.dampingWork, ledger.balance, ledger.forces is not None]
+        bodies = [[body.state.pos, body.state.vel] for body in O.bodies]
+        return steps, words, time, book, np.array(bodies)
+
     def states(self):
         return [O.bodies[i].state for i in self.net.bodyIds]
 

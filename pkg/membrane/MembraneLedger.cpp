@@ -96,8 +96,8 @@ void MembraneLedger::action() {
         for (std::size_t i = 0; i < mean.size(); ++i) doneWorks[i] = 0.5 * scene->dt * (2. * mean[i] - arriving[i]);
     }
     countedStep = scene->dt;
-    restless_ = !(scene->dt * (std::abs(mean[0]) + std::abs(mean[1]) + std::abs(mean[2])) <=
-                  restlessShare * (std::abs(kinetic) + elastic));
+    restless = !(scene->dt * (std::abs(mean[0]) + std::abs(mean[1]) + std::abs(mean[2])) <=
+                 restlessShare * (std::abs(kinetic) + elastic));
     if (!all) return;
 
     upToDate_ = scene->iter;
@@ -119,7 +119,7 @@ void MembraneLedger::postLoad(MembraneLedger&) {
 }
 
 bool MembraneLedger::wantsEnergies(const Scene& now) const {
-    return !started || now.iter % period == 0 || now.dt != countedStep || restless_ || endsRun(now);
+    return !started || now.iter % period == 0 || now.dt != countedStep || restless || endsRun(now);
 }
 
 bool MembraneLedger::isUpToDate(const Scene& now) const {

@@ -51,6 +51,7 @@ public:
             "What a MembraneIntegrator has to add up, is added up in every step. With interactions every step is brought up to date."))
         ((vector<Real>, doneWorks, , (Attr::readonly | Attr::hidden), "Works [J] of crease, damping, drag, driven nodes, others, and angular impulse [N m s], up to half a step after the last one."))
         ((Real, doneKinks, 0., (Attr::readonly | Attr::hidden), "kinkError up to the last step [J]."))
+        ((bool, restless, false, (Attr::readonly | Attr::hidden), "The last step's works were large: a watch must not miss what comes."))
         ((Real, countedStep, 0., (Attr::readonly | Attr::hidden), "O.dt of the last step [s]."))
         ((vector<Real>, lastLengths, , (Attr::readonly | Attr::hidden), "Lengths of the sides [m] in the last step, as of the last save."))
         ,
@@ -65,8 +66,7 @@ public:
     // clang-format on
 
 private:
-    long upToDate_ = -1;    ///< step to which all values belong
-    bool restless_ = false; ///< the last step's works were large: a watch must not miss what comes
+    long upToDate_ = -1; ///< step to which all values belong
 };
 REGISTER_SERIALIZABLE(MembraneLedger);
 

@@ -20,6 +20,9 @@ const char* const partNames[] = {"the sides", "the creases", "damping", "air dra
 /// Strain [-] of all sides whose energy counts as none: rounding must not stop a membrane at rest.
 constexpr Real noStrain = 1e-9;
 
+/// Of a body whose state is kept: id, pos, vel, angVel, ori.
+constexpr std::size_t numbersOfBody = 1 + 3 + 3 + 3 + 4;
+
 std::string pairText(const Membrane& membrane, int a, int b) {
     return std::to_string(a) + "-" + std::to_string(b) + " (bodies #" + std::to_string(membrane.bodyIds[a]) + " and #" +
            std::to_string(membrane.bodyIds[b]) + ")";
@@ -41,7 +44,7 @@ void MembraneWatch::action() {
         for (const ::membrane::Side& s : ledger->forces->membrane->rest().sides)
             floor_ += 0.5 * std::abs(s.stiffness) * std::pow(noStrain * s.restLength, 2);
 
-    const bool look = looked_ < 0 || scene->iter - looked_ >= period;
+    const bool look = looked < 0 || scene->iter - looked >= period;
     const Real gave[parts] = {ledger->balance(), look ? ledger->creaseDefect() : 0., ledger->dampingWork,
                               ledger->dragWork};
     if (lowest.empty()) lowest.assign(gave, gave + parts);
@@ -57,7 +60,7 @@ void MembraneWatch::action() {
     }
     if (!(gain <= most)) stop(worst, gain);
     if (!look) return;
-    looked_ = scene->iter;
+    looked = scene->iter;
     if (gain <= 0.5 * most) keep();
 }
 
@@ -66,35 +69,52 @@ Real MembraneWatch::allEnergy() const {
 }
 
 void MembraneWatch::keep() {
-    std::swap(newer_, older_);
-    newer_.bodies.clear();
+    olderBodies.swap(newerBodies);
+    olderLedger = newerLedger;
+    olderTime = newerTime;
+    newerBodies.clear();
     ledger->forces->writeBack();
     ledger->preSave(*ledger);
-    for (const auto& body : *scene->bodies)
-        newer_.bodies.push_back({body->id, body->state->pos, body->state->vel, body->state->angVel, body->state->ori});
-    newer_.ledger = shared_ptr<MembraneLedger>(new MembraneLedger(*ledger));
-    newer_.time = scene->time + scene->dt; // the integrator has moved the bodies already
+    for (const auto& body : *scene->bodies) {
+        const State& state = *body->state;
+        newerBodies.push_back(body->id);
+        for (const Vector3r& v : {Vector3r(state.pos), Vector3r(state.vel), Vector3r(state.angVel)})
+            newerBodies.insert(newerBodies.end(), v.data(), v.data() + 3);
+        const Quaternionr turned = state.ori;
+        newerBodies.insert(newerBodies.end(), turned.coeffs().data(), turned.coeffs().data() + 4);
+    }
+    newerLedger = shared_ptr<MembraneLedger>(new MembraneLedger(*ledger));
+    newerLedger->forces.reset();         // else a save would fetch the present lengths into it
+    newerTime = scene->time + scene->dt; // the integrator has moved the bodies already
 }
 
 Real MembraneWatch::restore() {
-    const Kept& kept = older_.ledger ? older_ : newer_;
-    if (!kept.ledger) throw std::runtime_error("MembraneWatch: no state was kept yet");
-    ledger->forces->writeBack();
-    for (const BodyState& was : kept.bodies) {
-        if (!scene->bodies->exists(was.id)) continue;
-        State& state = *(*scene->bodies)[was.id]->state;
-        state.pos = was.pos;
-        state.ori = was.ori;
-        state.vel = was.vel;
-        state.angVel = was.angVel;
+    if (!newerLedger) throw std::runtime_error("MembraneWatch: no state was kept yet");
+    const vector<Real>& bodies = olderLedger ? olderBodies : newerBodies;
+    const MembraneLedger& book = olderLedger ? *olderLedger : *newerLedger;
+    const Real time = olderLedger ? olderTime : newerTime;
+    const shared_ptr<MembraneForceEngine> forces = ledger->forces;
+    forces->writeBack();
+    for (std::size_t at = 0; at + numbersOfBody <= bodies.size(); at += numbersOfBody) {
+        const Real* const was = &bodies[at];
+        const auto id = static_cast<Body::id_t>(was[0]);
+        if (!scene->bodies->exists(id)) continue;
+        State& state = *(*scene->bodies)[id]->state;
+        state.pos = Vector3r(was + 1);
+        state.vel = Vector3r(was + 4);
+        state.angVel = Vector3r(was + 7);
+        state.ori = Quaternionr(was + 10);
     }
-    *ledger = *kept.ledger;
-    ledger->forces->forgetLengths();
-    scene->time = kept.time;
+    *ledger = book;
+    ledger->forces = forces;
+    forces->forgetLengths();
+    scene->time = time;
+    scene->subStep = -1; // the state lies between two steps, and not within the one that was stopped
+    scene->speed = 0.;   // of the computer; two saves of one state are to be the same
     scene->forces.reset(scene->iter);
     lowest.clear();
-    looked_ = -1;
-    return kept.time;
+    looked = -1;
+    return time;
 }
 
 void MembraneWatch::stop(int part, Real gain) const {

@@ -17,13 +17,20 @@ public:
         "from nowhere long before numbers overflow, and may never overflow at all. Whenever the ledger is up to date the watch looks at what sides, damping and drag have "
         "given since their lowest, and in every `period` steps also at the creases; where that is more than `tolerance` of all energy it raises "
         "RuntimeError, with the part, the side or crease and the node to blame. :yref:`restore` then brings back the last good state. "
-        "Put it after :yref:`MembraneLedger`; it rests while that is dead. Nodes that are given other velocities by hand are energy from nowhere, too: "
+        "A saved watch goes on as if it had never stopped. Put it after :yref:`MembraneLedger`; it rests while that is dead. Nodes that are given other velocities by hand are energy from nowhere, too: "
         "then start a new ledger and watch.",
         ((shared_ptr<MembraneLedger>, ledger, , Attr::triggerPostLoad, "The ledger that is watched."))
         ((Real, tolerance, 0.1, Attr::triggerPostLoad, "Energy from nowhere that stops the run, over all energy: the largest of kinetic, strain and crease energy so far, and what was lost by damping and drag [-], > 0."))
         ((int, period, 100, Attr::triggerPostLoad, "Steps between two states that are kept to be restored, and between two looks at the creases, > 0."))
         ((vector<Real>, lowest, , (Attr::readonly | Attr::hidden), "Lowest yet of what sides, creases, damping and drag gave [J]."))
         ((Real, peak, 0., (Attr::readonly | Attr::hidden), "Largest kinetic, strain and crease energy yet [J]."))
+        ((long, looked, -1, (Attr::readonly | Attr::hidden), "Step of the last look at the creases; -1: none yet."))
+        ((vector<Real>, newerBodies, , (Attr::readonly | Attr::hidden), "The state kept last: id, pos, vel, angVel and ori of every body in turn."))
+        ((vector<Real>, olderBodies, , (Attr::readonly | Attr::hidden), "The state kept before that."))
+        ((shared_ptr<MembraneLedger>, newerLedger, , (Attr::readonly | Attr::hidden), "Its ledger, without forces."))
+        ((shared_ptr<MembraneLedger>, olderLedger, , (Attr::readonly | Attr::hidden), "Its ledger, without forces."))
+        ((Real, newerTime, 0., (Attr::readonly | Attr::hidden), "Its time [s]."))
+        ((Real, olderTime, 0., (Attr::readonly | Attr::hidden), "Its time [s]."))
         ,
         ,
         .def("restore", &MembraneWatch::restore, "Put all bodies and the ledger back to the last good state, at most 2 `period` steps before the last step "
@@ -33,20 +40,7 @@ public:
     // clang-format on
 
 private:
-    struct BodyState {
-        Body::id_t id;
-        Vector3r pos, vel, angVel;
-        Quaternionr ori;
-    };
-    /// A state to return to.
-    struct Kept {
-        vector<BodyState> bodies;
-        shared_ptr<MembraneLedger> ledger;
-        Real time = 0.;
-    };
-    Kept newer_, older_;
     Real floor_ = 0.; ///< energy [J] that counts as none
-    long looked_ = -1;
 
     void keep();
     Real allEnergy() const;

@@ -21,7 +21,7 @@ def deploy(path):
     Returns
     -------
     dict
-        What is in summary.json.
+        What is in summary.json and wall_time.json.
     wall, used : float
         Wall time and processor time [s] of the whole command.
     """
@@ -37,11 +37,11 @@ def deploy(path):
         if done.returncode:
             raise RuntimeError(f"deploy failed: {done.stderr.strip()[-500:]}")
         wall = time.monotonic() - start
-        return (
-            json.loads((Path(folder) / "summary.json").read_text()),
-            wall,
-            processor_time() - used,
+        summary, times = (
+            json.loads((Path(folder) / name).read_text())
+            for name in ("summary.json", "wall_time.json")
         )
+        return {**summary, "wall_time": times}, wall, processor_time() - used
 
 
 def processor_time():

@@ -101,3 +101,27 @@ def swing(time, phase):
         "time_of_largest_lag": float(time[lag]),
         "return_time": float(time[lag + back[0]]) if len(back) else None,
     }
+
+
+def lag_and_half_period(time, phase):
+    """Amplitude and half the period of the phase difference.
+
+    Parameters
+    ----------
+    time : (S,) float
+        Times since the release [s].
+    phase : (S,) float
+        Mean phase difference [rad].
+
+    Returns
+    -------
+    lag : float
+        Largest lag of the mean tip [deg].
+    half_period : float
+        Time [s] from it to the largest lead that follows.
+    """
+    found = swing(time, phase)
+    lagged = found["time_of_largest_lag"]
+    after = time >= lagged
+    lead = time[after][np.argmax(phase[after])]
+    return float(np.degrees(found["largest_lag"])), float(lead - lagged)

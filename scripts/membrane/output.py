@@ -3,7 +3,6 @@
 
 import csv
 import io
-import json
 import math
 import os
 from pathlib import Path
@@ -16,7 +15,12 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import VTK_LINE, VTK_TRIANGLE, vtkCellArray, vtkUnstructuredGrid
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
 
-from .files import BadFile, read_text, replace_text, shown
+from .files import BadFile, read_text, replace_text, shown, write_json
+
+
+class NotFinite(ValueError):
+    """A result that is no finite number."""
+
 
 CELL_TYPES = {2: VTK_LINE, 3: VTK_TRIANGLE}
 PVD_HEAD = '<VTKFile type="Collection" version="1.0">\n<Collection>\n'
@@ -38,17 +42,23 @@ class VtkSeries:
         Stem of the files; those of an earlier series of this name are removed.
     cells : (M, 2) or (M, 3) int
         Node ids of lines or of triangles, the same in all frames.
+    times : sequence of float
+        Times [s] of the frames to keep of an earlier series, which this one continues.
     """
 
-    def __init__(self, folder, name, cells):
+    def __init__(self, folder, name, cells, times=()):
         cells = np.asarray(cells)
         if cells.ndim != 2 or cells.shape[1] not in CELL_TYPES:
             raise ValueError(f"cells of shape {cells.shape}: must be (M, 2) or (M, 3)")
         self.folder, self.name, self.cells = Path(folder), name, cells
-        self.frames = []
+        self.frames = [(time, self._file(i)) for i, time in enumerate(times)]
         self.folder.mkdir(parents=True, exist_ok=True)
+        kept = {file for _, file in self.frames}
         for earlier in self.folder.glob(f"{name}_*.vtu"):
-            earlier.unlink()
+            if earlier.name not in kept:
+                earlier.unlink()
+        if kept:
+            self._list_frames()
 
     def write(self, time, positions, cell_data=None):
         """Append a frame.
@@ -79,26 +89,41 @@ class VtkSeries:
             array = numpy_to_vtk(_finite(label, values), deep=True)
             array.SetName(label)
             grid.GetCellData().AddArray(array)
-        path = self.folder / f"{self.name}_{len(self.frames):06d}.vtu"
+        path = self.folder / self._file(len(self.frames))
         _write_grid(grid, path)
         self.frames.append((float(time), path.name))
         self._list_last_frame()
         return path
+
+    def positions(self):
+        """Positions of the nodes [m] in each frame, (N, 3) double, read back from the files."""
+        return [read_frame(self.folder / name)[0].copy() for _, name in self.frames]
+
+    def _file(self, number):
+        """Name of the file of a frame."""
+        return f"{self.name}_{number:06d}.vtu"
 
     def _list_last_frame(self):
         """Add the last frame to the .pvd file, over its closing lines and in one piece.
 
         Replacing the file would be safe, too, but some file systems wait for the disk then.
         """
-        time, file = self.frames[-1]
-        line = f'<DataSet timestep="{time!r}" part="0" file={quoteattr(file)}/>\n'
-        collection = self.folder / f"{self.name}.pvd"
         if len(self.frames) == 1:
-            replace_text(collection, PVD_HEAD + line + PVD_FOOT)
+            self._list_frames()
             return
-        with open(collection, "r+b") as stream:
+        with open(self.folder / f"{self.name}.pvd", "r+b") as stream:
             stream.seek(-len(PVD_FOOT), os.SEEK_END)
-            stream.write((line + PVD_FOOT).encode())
+            stream.write((_pvd_line(*self.frames[-1]) + PVD_FOOT).encode())
+
+    def _list_frames(self):
+        """Replace the .pvd file by one that lists all frames."""
+        lines = "".join(_pvd_line(*frame) for frame in self.frames)
+        replace_text(self.folder / f"{self.name}.pvd", PVD_HEAD + lines + PVD_FOOT)
+
+
+def _pvd_line(time, file):
+    """What a .pvd file says of a frame."""
+    return f'<DataSet timestep="{time!r}" part="0" file={quoteattr(file)}/>\n'
 
 
 class HistoryWriter:
@@ -112,14 +137,24 @@ class HistoryWriter:
         The .csv file; overwritten.
     units : dict of str
         Unit by column name, in the order of the columns; "-" for none.
+    size : int, optional
+        Bytes to keep of an earlier table, which this one continues.
     """
 
-    def __init__(self, path, units):
+    def __init__(self, path, units, size=None):
         self.path, self.columns = Path(path), tuple(units)
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        replace_text(self.path.with_suffix(".units.json"), json.dumps(units, indent=2) + "\n")
-        self._file = open(self.path, "w", newline="")
-        self._line(self.columns)
+        write_json(self.path.with_suffix(".units.json"), units)
+        self._file = open(self.path, "w" if size is None else "r+", newline="")
+        if size is None:
+            self._line(self.columns)
+        else:
+            self._file.truncate(size)
+            self._file.seek(size)
+
+    def size(self):
+        """Bytes written so far."""
+        return self.path.stat().st_size
 
     def write(self, values):
         """Append a line; `values` gives a finite number for every column by name.
@@ -127,7 +162,7 @@ class HistoryWriter:
         Raises
         ------
         ValueError
-            If a column is missing or unknown, or its value is no finite number.
+            If a column is missing or unknown; NotFinite, if its value is no finite number.
         """
         wrong = sorted(set(values) ^ set(self.columns))
         if wrong:
@@ -135,7 +170,7 @@ class HistoryWriter:
         row = [float(values[name]) for name in self.columns]
         for name, value in zip(self.columns, row):
             if not math.isfinite(value):
-                raise ValueError(f"{name} = {value}: must be finite, in {self.path.name}")
+                raise NotFinite(f"{name} = {value}: must be finite, in {self.path.name}")
         self._line(map(repr, row))
 
     def close(self):
@@ -240,8 +275,8 @@ def _write_grid(grid, path):
 
 
 def _finite(name, values):
-    """`values` as a contiguous array; raise ValueError if one is not finite."""
+    """`values` as a contiguous array; raise NotFinite if one is not."""
     values = np.ascontiguousarray(values)
     if not np.all(np.isfinite(values)):
-        raise ValueError(f"{name}: has values that are not finite")
+        raise NotFinite(f"{name}: has values that are not finite")
     return values

@@ -14,6 +14,11 @@ from .files import BadFile, read_object, shown
 
 TABLE_1, TABLE_2, ASSUMED, RUN = "Table 1", "Table 2", "assumed", "run"
 
+# The cases that the paper compares, and how long it takes to see the largest lag of the tips and
+# the largest lead that follows [s].
+TABLE_2_CASES = {"alpha_crease": (100.0, 1000.0), "beta": (0.0, 3.0, 30.0)}
+TABLE_2_DURATION = 1.2
+
 
 def _parameter(default, unit, source, text, least=0.0, most=inf, above=False, choices=None):
     """A field with its unit, source, meaning and range; `above`: `least` itself is excluded."""
@@ -163,13 +168,16 @@ def describe(item):
     return f"{about['text']}{unit} ({about['source']}{extent}; default {item.default})"
 
 
-def add_arguments(parser, kind=SailParameters):
-    """Add one option for every parameter to an argparse parser, grouped by source."""
+def add_arguments(parser, kind=SailParameters, several=None):
+    """Add one option for every parameter to an argparse parser, grouped by source.
+
+    `several` (a dict) gives the defaults of those parameters that take one value or more.
+    """
     for source in dict.fromkeys(item.metadata["source"] for item in fields(kind)):
         group = parser.add_argument_group(f"parameters: {source}")
         for item in fields(kind):
             if item.metadata["source"] == source:
-                _add_argument(group, item)
+                _add_argument(group, item, (several or {}).get(item.name))
 
 
 def parse(parser, kind=SailParameters):
@@ -186,7 +194,7 @@ def parse(parser, kind=SailParameters):
     return parser.parse_args()
 
 
-def _add_argument(group, item):
+def _add_argument(group, item, several):
     flag, text = "--" + item.name.replace("_", "-"), describe(item).replace("%", "%%")
     if item.type is bool:
         group.add_argument(
@@ -195,9 +203,12 @@ def _add_argument(group, item):
         return
     choices = item.metadata["choices"]
     metavar = None if choices else item.metadata["unit"].replace("-", "N")
-    group.add_argument(
-        flag, type=item.type, default=item.default, choices=choices, metavar=metavar, help=text
-    )
+    more = {"default": item.default}
+    if several:
+        shown = " ".join(f"{value:g}" for value in several)
+        text = text.replace(f"default {item.default}", f"one or more; default {shown}")
+        more = {"default": list(several), "nargs": "+"}
+    group.add_argument(flag, type=item.type, choices=choices, metavar=metavar, help=text, **more)
 
 
 def from_arguments(arguments, overrides=None, kind=SailParameters):

@@ -21,7 +21,8 @@ from .parameters import RUN, SailParameters, check, parameter
 from .pattern_mesh import mesh_pattern
 from .patterns import crease_pattern, nearest_pose
 from .record import LEDGER_UNITS, Recorder
-from .sail import instants, march, save_last_good, versions, write_json
+from .files import write_json
+from .sail import instants, march, save_last_good, versions
 
 SHEET, SPIN = "sheet", "spin"
 STEP = 0.5  # of the critical one, by default
@@ -311,7 +312,7 @@ def fly(sheet, p, folder, pictures=True, shown=None):
     Returns
     -------
     dict
-        What is written to summary.json.
+        What is written to summary.json, and `wall_time`, which has a file of its own.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -356,7 +357,6 @@ def fly(sheet, p, folder, pictures=True, shown=None):
         },
         "critical_time_step": critical,
         "dt": dt,
-        "wall_time": {"build": started - begin, "run": ended - started},
         "measures": {
             **{f"final_{name}": float(history[name][-1]) for name in list(UNITS)[1:7]},
             "largest_projected_area": float(history["projected_area"].max()),
@@ -371,8 +371,10 @@ def fly(sheet, p, folder, pictures=True, shown=None):
             "largest_change_of_angular_momentum": float(np.ptp(momentum)),
         },
     }
+    wall = {"build": started - begin, "run": ended - started}
     write_json(folder / "summary.json", summary)
-    return summary
+    write_json(folder / "wall_time.json", wall)
+    return {**summary, "wall_time": wall}
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from . import measures
-from .output import HistoryWriter, VtkSeries
+from .output import HistoryWriter, VtkSeries, read_history
 
 LEDGER_UNITS = {
     "kinetic_energy": "J",
@@ -79,6 +79,8 @@ class Recorder:
     sail : MembraneScene
     spin_rate : float
         Of the spool [rad/s].
+    state : dict, optional
+        What `state()` gave in a run that this one continues in the same folder.
 
     Attributes
     ----------
@@ -92,10 +94,16 @@ class Recorder:
 
     units = UNITS
 
-    def __init__(self, folder, mesh, sail, spin_rate):
+    def __init__(self, folder, mesh, sail, spin_rate, state=None):
         self.mesh, self.sail, self.spin_rate = mesh, sail, spin_rate
-        self.rows, self.frames, self.frame_times = [], [], []
-        self._history = HistoryWriter(Path(folder) / "history.csv", self.units)
+        state = state or {
+            "history_size": None,
+            "times": [],
+            "first_lead": None,
+            "phases": [0.0] * 4,
+        }
+        table, shapes = Path(folder) / "history.csv", Path(folder) / "shapes"
+        self._history = HistoryWriter(table, self.units, state["history_size"])
         membrane = sail.membrane
         self._sides = np.array(membrane.sides)
         self._rest = np.array(membrane.restLengths)
@@ -107,12 +115,22 @@ class Recorder:
         ahead = np.roll(mesh.triangles, -1, axis=1)
         pairs = np.stack([mesh.triangles, ahead], axis=-1).reshape(-1, 2)
         self._triangle_sides = self._rows_of(pairs).reshape(-1, 3)
-        shapes = Path(folder) / "shapes"
-        self._film = VtkSeries(shapes, "film", mesh.triangles)
-        self._lines = VtkSeries(shapes, "sides", self._sides)
+        self.frame_times = list(state["times"])
+        self._film = VtkSeries(shapes, "film", mesh.triangles, self.frame_times)
+        self._lines = VtkSeries(shapes, "sides", self._sides, self.frame_times)
         (shapes / "fields.json").write_text(json.dumps(SHAPE_FIELDS, indent=2) + "\n")
+        self.rows, self.frames = _rows(table), self._film.positions()
         # Of the tips against the spool [rad]: at the first row, where its time is 0, and since.
-        self._first_lead, self._phases = None, np.zeros(4)
+        self._first_lead, self._phases = state["first_lead"], np.array(state["phases"])
+
+    def state(self):
+        """What a Recorder needs to continue this one, ready for JSON."""
+        return {
+            "history_size": self._history.size(),
+            "times": self.frame_times,
+            "first_lead": self._first_lead,
+            "phases": self._phases.tolist(),
+        }
 
     def _rows_of(self, pairs):
         """Rows (n,) in the membrane's sides of pairs (n, 2) of nodes."""
@@ -131,7 +149,7 @@ class Recorder:
         """Measures of the shape `x` (N, 3) [m] at `time` [s] by name."""
         lead = measures.tip_azimuths(self.mesh, x) - self.spin_rate * time
         if self._first_lead is None:
-            self._first_lead = lead
+            self._first_lead = lead.tolist()
         self._phases = phases = measures.nearest_turn(lead - self._first_lead, self._phases)
         return {
             "deployment_rate": measures.deployment_rate(self.mesh, x),
@@ -202,6 +220,12 @@ class Recorder:
     def close(self):
         """Close history.csv."""
         self._history.close()
+
+
+def _rows(table):
+    """Rows of a history.csv so far, each a dict."""
+    columns = read_history(table)
+    return [dict(zip(columns, row)) for row in zip(*columns.values())]
 
 
 def _single_precision(fields):

@@ -215,7 +215,6 @@ def _measures(summary):
     for name, label, unit, factor in MEASURES:
         value = summary["measures"][name]
         rows.append([label, "never" if value is None else f"{factor * value:.4g}", unit])
-    rows.append(["wall time of the run", f"{summary['wall_time']['run']:.3g}", "s"])
     return {"title": "Measures", "head": ["measure", "value", "unit"], "rows": rows}
 
 

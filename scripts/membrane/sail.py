@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The paper's sail as a scene: build, spin up, release and run it, and leave the results."""
 
-import json
 import os
 import platform
 import sys
@@ -14,8 +13,10 @@ import yade.config
 from yade import wrapper as yade_classes
 
 from . import __version__, measures, plots, report, scene
+from .files import write_json
 from .fold import fold, fold_report
 from .mesh import mesh_of
+from .output import NotFinite
 from .progress import Progress
 from .record import Recorder
 from .spool import add_spool
@@ -23,6 +24,25 @@ from .spool import add_spool
 # The spin-up may take longer steps than the run: no accuracy is asked of it.
 SPIN_UP_STEP = 0.7
 LAST_GOOD = "last_good.yade.gz"
+SPIN_UP, RUN = "spin_up", "run"  # stages
+
+
+class Diverged(RuntimeError):
+    """A run went wrong, as another one with the same parameters will.
+
+    Attributes
+    ----------
+    stage : str
+        SPIN_UP or RUN.
+    time : float or None
+        When the last step began, after the release [s]; None if it came not so far.
+    reason : str
+        What the engine said that stopped it.
+    """
+
+    def __init__(self, stage, time, reason, saved=""):
+        super().__init__(". ".join(filter(None, [reason, saved])))
+        self.stage, self.time, self.reason = stage, time, reason
 
 
 def build(p):
@@ -87,9 +107,13 @@ def look_away(_):
     """What those do who do not watch."""
 
 
-def spin_up(sail, p, look=look_away):
-    """Bring the folded sail to rest in the turning frame; returns what `scene.spin_up` does."""
-    yade_classes.Omega().dt = SPIN_UP_STEP * sail.forces.criticalTimeStep()
+def spin_up(sail, p, begun=None, keep=None, look=look_away):
+    """Bring the folded sail to rest in the turning frame.
+
+    Arguments and result are those of `scene.spin_up`; `look` is called as by `deploy`.
+    """
+    if not begun:
+        yade_classes.Omega().dt = SPIN_UP_STEP * sail.forces.criticalTimeStep()
     last = {"residual": 1.0}
     progress = Progress("spin-up ", 1.0)
 
@@ -101,40 +125,74 @@ def spin_up(sail, p, look=look_away):
         look(sail)
 
     return scene.spin_up(
-        sail, p.omega, tolerance=p.spin_up_tolerance, damping=p.spin_up_damping, on_batch=show
+        sail,
+        p.omega,
+        tolerance=p.spin_up_tolerance,
+        damping=p.spin_up_damping,
+        on_batch=show,
+        begun=begun,
+        keep=keep,
     )
 
 
-def run(mesh, sail, p, recorder, look=look_away):
-    """Release the sail and run it for p.duration, with rows and shapes at their intervals."""
+def release(mesh, sail, p):
+    """Release the sail, with the time step of the run."""
     yade_classes.Omega().dt = p.dt
     scene.release(sail, p.omega, mesh.guide_nodes.ravel())
-    march(p, recorder, lambda measured: f"rate {measured['deployment_rate']:.3f}", look)
 
 
-def march(p, recorder, note, look=look_away):
-    """Run the released sail for p.duration; `note(row)` is shown beside the progress.
+def march(p, recorder, note, look=look_away, begun=None, keep=None):
+    """Run the released sail for p.duration, with rows and shapes at their intervals.
 
-    `p` has dt, duration, history_interval and shapes_interval [s].
+    Parameters
+    ----------
+    p : object
+        With dt, duration, history_interval and shapes_interval [s].
+    recorder : Recorder
+    note : callable
+        Text about a row, to be shown beside the progress.
+    look : callable
+        Called with the MembraneScene after each row.
+    begun : int, optional
+        Row that was written last when the scene was saved that is now to go on.
+    keep : callable, optional
+        Called after each row but the last with its number, which a later `begun` takes.
     """
     stride = max(1, round(p.history_interval / p.dt))
     rows = max(1, round(p.duration / (stride * p.dt)))
     between = round(p.shapes_interval / (stride * p.dt)) if p.shapes_interval > 0 else 0
     progress = Progress("deploying", p.duration)
-    scene.advance(1)  # a step's measures belong to the time at which it began
-    recorder.history(0.0)
-    recorder.shape(0.0)
-    for row in range(1, rows + 1):
-        scene.advance(stride)
+    if begun is None:
+        scene.advance(1)  # a step's measures belong to the time at which it began
+        recorder.history(0.0)
+        recorder.shape(0.0)
+    for row in range((begun or 0) + 1, rows + 1):
+        scene.advance(stride, recorder.sail.forces if row - 1 == begun else None)
         now = row * stride * p.dt
         measured = recorder.history(now)
         if row == rows or (between and row % max(1, between) == 0):
             recorder.shape(now)
         progress.update(now, "  " + note(measured))
         look(recorder.sail)
+        if keep and row < rows:
+            keep(row)
 
 
-def deploy(p, folder, pictures=True, page=True, look=look_away):
+class Stopwatch:
+    """Wall time [s] by stage of a run, that of an earlier part of it included."""
+
+    def __init__(self, times=None):
+        self.times, self._since = dict(times or {}), time.monotonic()
+
+    def lap(self, stage):
+        """Count the time since the last call for `stage`; returns all times."""
+        now = time.monotonic()
+        self.times[stage] = self.times.get(stage, 0.0) + now - self._since
+        self._since = now
+        return self.times
+
+
+def deploy(p, folder, pictures=True, checkpoints=None, page=True, look=look_away):
     """Do it all and write the results into `folder`.
 
     Parameters
@@ -144,6 +202,9 @@ def deploy(p, folder, pictures=True, page=True, look=look_away):
         Made if missing.
     pictures : bool
         Draw deployment.png and shapes.png.
+    checkpoints : Checkpoints, optional
+        Where the run saves itself now and then, and goes on from if it did. It leaves, but for
+        wall_time.json, the files of a run that was never stopped, byte for byte.
     page : bool
         Write report.html; where the viewer is not built, say so and go on.
     look : callable, optional
@@ -152,39 +213,70 @@ def deploy(p, folder, pictures=True, page=True, look=look_away):
     Returns
     -------
     dict
-        What is written to summary.json.
+        What is written to summary.json, and `wall_time`, which has a file of its own.
+
+    Raises
+    ------
+    ValueError
+        If the parameters are refused.
+    Diverged
+        If the run went wrong.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    clock = [time.monotonic()]
-    mesh, sail = build(p)
-    folded = sail.positions()
-    folding = asdict(fold_report(mesh, folded))
+    watch = Stopwatch()
+    saved = checkpoints.load() if checkpoints else None
+    if saved:
+        mesh, sail, facts = mesh_of(p), scene.loaded(), saved["facts"]
+        watch = Stopwatch(saved["wall_time"])
+    else:
+        mesh, sail, facts = begin(p)
+        if checkpoints:
+            scene.sort_interactions()
+    watch.lap("build")
     look(sail)
-    critical = sail.forces.criticalTimeStep()
-    if p.dt > critical and not p.force_time_step:
-        raise ValueError(
-            f"dt = {p.dt} s must be <= {critical:.4g} s, the critical time step of this sail "
-            "(force_time_step overrules)"
-        )
-    clock.append(time.monotonic())
-    equilibrium = spin_up(sail, p, look)
-    clock.append(time.monotonic())
-    recorder = Recorder(folder, mesh, sail, p.omega)
+
+    def keep(stage, progress):
+        if checkpoints and checkpoints.due():
+            times = watch.lap(stage)
+            checkpoints.save(
+                {"stage": stage, "facts": facts, "wall_time": times, "progress": progress}
+            )
+
+    begun = saved["progress"] if saved else None
+    if not saved or saved["stage"] == SPIN_UP:
+        try:
+            facts["spin_up"] = spin_up(sail, p, begun, lambda state: keep(SPIN_UP, state), look)
+        except RuntimeError as error:
+            raise Diverged(SPIN_UP, None, str(error)) from error
+        watch.lap(SPIN_UP)
+        begun = None
+        release(mesh, sail, p)
+        facts["release_step"] = yade_classes.Omega().iter
+    recorder = Recorder(folder, mesh, sail, p.omega, begun and begun["recorder"])
     try:
-        run(mesh, sail, p, recorder, look)
-    except RuntimeError as error:
-        raise RuntimeError(f"{error}. {save_last_good(sail, folder)}") from error
+        march(
+            p,
+            recorder,
+            lambda row: f"rate {row['deployment_rate']:.3f}",
+            look,
+            begun and begun["row"],
+            lambda row: keep(RUN, {"row": row, "recorder": recorder.state()}),
+        )
+    except (RuntimeError, NotFinite) as error:
+        time_reached = (yade_classes.Omega().iter - facts["release_step"]) * p.dt
+        saying = save_last_good(sail, folder)
+        if pictures and recorder.rows:
+            draw(mesh, recorder, recorder.columns(), folder)
+        raise Diverged(RUN, time_reached, str(error), saying) from error
     finally:
         recorder.close()
-    clock.append(time.monotonic())
+        watch.lap(RUN)
     history = recorder.columns()
     if pictures:
         draw(mesh, recorder, history, folder)
-    clock.append(time.monotonic())
+    wall = watch.lap("pictures")
 
-    stages = ("build", "spin_up", "run", "pictures")
-    wall = {name: clock[i + 1] - clock[i] for i, name in enumerate(stages)}
     steps = round(p.duration / p.dt)
     summary = {
         "parameters": p.as_dict(),
@@ -196,10 +288,9 @@ def deploy(p, folder, pictures=True, page=True, look=look_away):
             "creases": len(mesh.creases),
             "film_mass": p.density * p.thickness * sail.membrane.area,
         },
-        "fold": folding,
-        "critical_time_step": critical,
-        "spin_up": equilibrium,
-        "wall_time": {**wall, "per_step": wall["run"] / max(1, steps)},
+        "fold": facts["fold"],
+        "critical_time_step": facts["critical_time_step"],
+        "spin_up": facts["spin_up"],
         "measures": {
             "final_deployment_rate": float(history["deployment_rate"][-1]),
             "largest_deployment_rate": float(history["deployment_rate"].max()),
@@ -214,10 +305,33 @@ def deploy(p, folder, pictures=True, page=True, look=look_away):
             ),
         },
     }
+    wall["per_step"] = wall[RUN] / max(1, steps)
     write_json(folder / "summary.json", summary)
+    write_json(folder / "wall_time.json", wall)
     if page:
         write_page(folder)
-    return summary
+    return {**summary, "wall_time": wall}
+
+
+def begin(p):
+    """Build the sail of `p` and check its time step.
+
+    Returns
+    -------
+    mesh : SailMesh
+    sail : MembraneScene
+    facts : dict
+        What summary.json tells of them.
+    """
+    mesh, sail = build(p)
+    folding = asdict(fold_report(mesh, sail.positions()))
+    critical = sail.forces.criticalTimeStep()
+    if p.dt > critical and not p.force_time_step:
+        raise ValueError(
+            f"dt = {p.dt} s must be <= {critical:.4g} s, the critical time step of this sail "
+            "(force_time_step overrules)"
+        )
+    return mesh, sail, {"fold": folding, "critical_time_step": critical}
 
 
 def write_page(folder):
@@ -236,6 +350,10 @@ def save_last_good(sail, folder):
     except RuntimeError as error:
         return f"No good state could be saved ({error})"
     path = Path(folder) / LAST_GOOD
+    scene.renew_collider()
+    tags = yade_classes.Omega().tags
+    for name in tags.keys():
+        tags[name] = ""  # else two files of one state would differ by day and machine
     yade_classes.Omega().save(str(path), quiet=True)
     return f"The last good state, of t = {time:.6g} s on YADE's clock, is in {path}"
 
@@ -268,10 +386,3 @@ def versions():
         "numpy": np.__version__,
         "threads": int(os.environ.get("OMP_NUM_THREADS", 1)),
     }
-
-
-def write_json(path, content):
-    """Write a JSON file so that readers see either the old one or the new one."""
-    part = path.with_name(path.name + ".part")
-    part.write_text(json.dumps(content, indent=2, allow_nan=False) + "\n")
-    os.replace(part, path)

@@ -232,15 +232,7 @@ def set_engines(
     if touching:
         for body in (scene.bodies[i] for i in touching):
             body.bounded, body.mask = True, spool.TETHER_MASK
-        bounds = [yade.Bo1_Sphere_Aabb(), yade.Bo1_Facet_Aabb()]
-        collider = [
-            yade.InsertionSortCollider(
-                bounds,
-                verletDist=spool.VERLET_DISTANCE,
-                targetInterv=-1,
-                avoidSelfInteractionMask=spool.NO_SELF_CONTACT,
-            )
-        ]
+        collider = [_collider()]
         geometry.append(yade.Ig2_Facet_Sphere_ScGeom())
         physics.append(yade.Ip2_FrictMat_FrictMat_FrictPhys())
         laws.append(yade.Law2_ScGeom_FrictPhys_CundallStrack())
@@ -293,12 +285,73 @@ def set_engines(
     )
 
 
-def advance(steps):
-    """Run `steps` steps. Raises what an engine raised."""
+def _collider():
+    """The collider of tethers and spool."""
+    return yade.InsertionSortCollider(
+        [yade.Bo1_Sphere_Aabb(), yade.Bo1_Facet_Aabb()],
+        verletDist=spool.VERLET_DISTANCE,
+        targetInterv=-1,
+        avoidSelfInteractionMask=spool.NO_SELF_CONTACT,
+    )
+
+
+def renew_collider():
+    """Put a new collider in the place of the one that `set_engines` made, if any.
+
+    It counts how often it was loaded, so that else two saves of one state would differ.
+    """
+    omega = yade.Omega()
+    old = yade.InsertionSortCollider
+    omega.engines = [_collider() if isinstance(e, old) else e for e in omega.engines]
+
+
+def loaded():
+    """The MembraneScene of a scene that `set_engines` made and O.load brought back.
+
+    Its only membrane counts; `driven` lists bodies as its engines do.
+    """
+    found = {}
+    for engine in yade.Omega().engines:
+        found.setdefault(type(engine).__name__, engine)
+    forces = found.get("MembraneIntegrator") or found["MembraneForceEngine"]
+    rotation, turning = found["RotationEngine"], found["SpoolRotation"]
+    return MembraneScene(
+        forces.membrane,
+        forces,
+        found["CentrifugalField"],
+        rotation,
+        turning,
+        found["NewtonIntegrator"],
+        found["MembraneLedger"],
+        found.get("MembraneWatch"),
+        found["ForceResetter"],
+        [*turning.ids, *rotation.ids],
+    )
+
+
+def sort_interactions():
+    """Let YADE's loop go through interactions in the order of their ids, at some cost in time.
+
+    Then a saved scene goes on bit for bit also while tethers touch the spool.
+    """
+    for engine in yade.Omega().engines:
+        if isinstance(engine, yade.InteractionLoop):
+            engine.loopOnSortedInteractions = True
+
+
+def advance(steps, resumed=None):
+    """Run `steps` steps. Raises what an engine raised.
+
+    `resumed`: the forces engine of a scene that was just loaded. It checks O.dt in its first step
+    only if it would have done so without a stop: the critical time step changes with the state.
+    """
     scene = yade.Omega()
     scene.stopAtIter = scene.iter + steps  # lets a MembraneIntegrator know when the run ends
     try:
         # O.run() would lose what an engine raises before O.wait() is called.
+        if resumed and steps > 0:
+            _first_step(resumed)
+            steps -= 1
         _plugin["MembraneForceEngine"].advance(steps)
     except BaseException:
         for engine in scene.engines:
@@ -307,6 +360,16 @@ def advance(steps):
         raise
     finally:
         scene.stopAtIter = 0
+
+
+def _first_step(forces):
+    """Run the first step after a load."""
+    forced = forces.forceTimeStep
+    forces.forceTimeStep = forced or yade.Omega().iter % forces.timeStepCheckPeriod != 0
+    try:
+        forces.advance(1)
+    finally:
+        forces.forceTimeStep = forced
 
 
 def compute_forces(sail):
@@ -367,7 +430,18 @@ def residual_energy(sail, omega):
     return float(np.sum(mass * speed2) / (omega**2 * np.sum(mass * radius2)))
 
 
-def spin_up(sail, omega, *, tolerance=1e-6, damping=0.3, batch=2000, max_time=5.0, on_batch=None):
+def spin_up(
+    sail,
+    omega,
+    *,
+    tolerance=1e-6,
+    damping=0.3,
+    batch=2000,
+    max_time=5.0,
+    on_batch=None,
+    begun=None,
+    keep=None,
+):
     """Bring the sail to rest in a frame that turns at `omega` [rad/s] (MODEL, folding step 3).
 
     Parameters
@@ -384,6 +458,10 @@ def spin_up(sail, omega, *, tolerance=1e-6, damping=0.3, batch=2000, max_time=5.
         Simulated time [s] after which to give up with RuntimeError.
     on_batch : callable, optional
         Called with (simulated time, residual) after each batch.
+    begun : dict, optional
+        What `keep` was given when the scene was saved that is now to go on.
+    keep : callable, optional
+        Called after each batch but the last, with a dict that a later `begun` takes.
 
     Returns
     -------
@@ -397,14 +475,17 @@ def spin_up(sail, omega, *, tolerance=1e-6, damping=0.3, batch=2000, max_time=5.
     sail.field.omega = omega
     sail.newton.damping = damping
     sail.resetter.dead = False
-    steps, calm, residual = 0, 0, float("inf")
+    steps, calm = (begun["steps"], begun["calm"]) if begun else (0, 0)
+    resumed = sail.forces if begun else None
+    residual = float("inf")
     while calm < 2:
         if steps * scene.dt > max_time:
             raise RuntimeError(
                 f"spin-up found no equilibrium in {max_time} s: residual energy {residual:.3g}, "
                 f"wanted {tolerance:.3g}"
             )
-        advance(batch)
+        advance(batch, resumed)
+        resumed = None
         steps += batch
         residual = residual_energy(sail, omega)
         if not residual < 10:
@@ -415,6 +496,8 @@ def spin_up(sail, omega, *, tolerance=1e-6, damping=0.3, batch=2000, max_time=5.
         calm = calm + 1 if residual < tolerance else 0
         if on_batch:
             on_batch(steps * scene.dt, residual)
+        if keep and calm < 2:
+            keep({"steps": steps, "calm": calm})
     return {"time": steps * scene.dt, "steps": steps, "residual": residual}
 
 

@@ -13,6 +13,7 @@ TETHER_MASK = SPOOL_MASK | 1 << 27
 # Bodies of one and the same mask that share a bit with this one do not collide with one another:
 # neither tether masses nor facets.
 NO_SELF_CONTACT = TETHER_MASK
+COLOUR = (0.45, 0.48, 0.55)  # else YADE draws one by lot
 VERLET_DISTANCE = 2e-3  # of the collider [m]
 
 
@@ -85,6 +86,6 @@ def add_spool(radius=0.025, height=0.06, facets=36, young=1e6, friction_angle=0.
     for (x1, y1), (x2, y2) in zip(rim, rim[1:]):
         low1, low2, high1, high2 = (x1, y1, -half), (x2, y2, -half), (x1, y1, half), (x2, y2, half)
         for corners in ((low1, low2, high2), (low1, high2, high1)):
-            facet = utils.facet(corners, material=material, mask=SPOOL_MASK)
+            facet = utils.facet(corners, material=material, mask=SPOOL_MASK, color=COLOUR)
             ids.append(scene.bodies.append(facet))
     return ids

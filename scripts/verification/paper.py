@@ -15,15 +15,15 @@ from functools import cache
 
 import numpy as np
 from matplotlib.figure import Figure
-from membrane import measures
-from membrane.parameters import SailParameters
+from membrane.measures import lag_and_half_period
+from membrane.parameters import TABLE_2_CASES, SailParameters
+from sweeping.pictures import draw_curves
 
 from . import ROOT, Check, at_most, recorded
 from .deployment import DURATION, INTERVAL, deploy, ensemble, equilibrium, perturbed
 
 PICTURE = ROOT / "reference" / "table2.png"
-ALPHA_CREASE = (100.0, 1000.0)
-BETA = (0.0, 3.0, 30.0)
+ALPHA_CREASE, BETA = TABLE_2_CASES["alpha_crease"], TABLE_2_CASES["beta"]
 OTHER, OTHER_MEMBERS = (1000.0, 0.0), 3  # a second case whose spread is measured
 SPREADS = 2  # standard deviations of a change that count as none
 
@@ -63,18 +63,6 @@ QUANTITIES = (("largest lag", "deg"), ("half period", "s"))
 SPREAD_SOURCE = "standard deviation over the ensemble"
 
 
-def lag_and_half_period(times, phase):
-    """Largest lag [deg] of the mean tip and time [s] from it to the following largest lead.
-
-    `times` (S,) [s], `phase` (S,) mean phase difference [rad].
-    """
-    found = measures.swing(times, phase)
-    lagged = found["time_of_largest_lag"]
-    after = times >= lagged
-    lead = times[after][np.argmax(phase[after])]
-    return float(np.degrees(found["largest_lag"])), float(lead - lagged)
-
-
 @cache
 def case(alpha_crease, beta):
     """The run of one case; that of the default parameters is the ensemble's first."""
@@ -97,11 +85,10 @@ def draw(runs, swings, path):
     """Phase difference of the cases (dict of Deployment) and their swings (dict), to `path`."""
     figure = Figure(figsize=(10, 4), layout="constrained")
     curves, marks = figure.subplots(1, 2, width_ratios=(1.6, 1))
-    for (alpha_crease, beta), run in runs.items():
-        style = {"color": f"C{BETA.index(beta)}", "linestyle": "-:"[alpha_crease < 1000]}
-        label = f"alpha_c = {alpha_crease:g}, beta = {beta:g}"
-        curves.plot(run.times, np.degrees(run.phase), label=label, **style)
-        marker = {"color": style["color"], "marker": "sD"[alpha_crease < 1000]}
+    drawn = draw_curves(curves, {key: (r.times, np.degrees(r.phase)) for key, r in runs.items()})
+    for (alpha_crease, beta), line in drawn.items():
+        marker = {"color": line.get_color(), "marker": "sD"[alpha_crease < 1000]}
+        label = line.get_label()
         marks.plot(*swings[alpha_crease, beta], linestyle="", label=label, **marker)
     for members, sign in ((ensemble(), "k."), (others(), "k+")):
         twins = np.transpose([lag_and_half_period(run.times, run.phase) for run in members])

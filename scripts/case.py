@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""One case of the paper's scene, whole or not at all, as part of a sweep or alone.
+
+Run it by `scripts/run.sh case --out DIR [options]`, or by `yade -n -x scripts/case.py --out DIR
+[options]`, again if it was killed: it goes on from its last checkpoint. In a batch of yade-batch
+the options are columns of the table. Exits with 0 for a case that is complete or has diverged.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+from membrane.batch import batch_row
+from membrane.case import run_case
+from membrane.case_folder import COMPLETE
+from membrane.parameters import add_arguments, from_arguments
+
+
+def command_line():
+    """Parsed sys.argv."""
+    parser = argparse.ArgumentParser(
+        prog="case", description="Deploy the paper's solar sail; leave all results or none."
+    )
+    parser.add_argument("--out", metavar="DIR", help="folder of the case; it appears at the end")
+    parser.add_argument("--no-pictures", action="store_true", help="draw no pictures")
+    parser.add_argument(
+        "--checkpoint-every",
+        type=float,
+        default=60.0,
+        metavar="SECONDS",
+        help="wall time between two checkpoints [s], >= 0 (default 60)",
+    )
+    add_arguments(parser)
+    return parser.parse_args()
+
+
+def main():
+    """Run the case; sys.exit with one sentence if that cannot be."""
+    arguments = command_line()
+    overrides, own, _ = batch_row(
+        out=arguments.out,
+        no_pictures=arguments.no_pictures,
+        checkpoint_every=arguments.checkpoint_every,
+    )
+    if not own["out"]:
+        sys.exit("case: --out is missing, the folder of the case")
+    folder = Path(own["out"])
+    try:
+        found = run_case(
+            from_arguments(arguments, overrides),
+            folder,
+            own["checkpoint_every"],
+            pictures=not own["no_pictures"],
+        )
+    except (ValueError, RuntimeError, OSError) as error:
+        sys.exit(f"case: {error}")
+    if found["outcome"] == COMPLETE:
+        print(f"Complete: {folder}")
+    elif found["time"] is None:
+        print(f"Diverged in the spin-up: {found['reason']}: {folder}")
+    else:
+        print(f"Diverged {found['time']:.6g} s after the release: {found['reason']}: {folder}")
+
+
+main()

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Sweeps over alpha_c and beta, by default the paper's Table 2, and makes one report.
+
+`sweep.py run [options]`, in short `scripts/run.sh sweep [options]`, runs the cases that are not
+there yet by yade-batch, and reports. `sweep.py report DIR` only reports, of finished cases as
+scripts/case.py leaves them; it needs no YADE.
+"""
+
+import argparse
+import os
+import signal
+import sys
+from pathlib import Path
+
+import sweeping  # noqa: F401  (makes parts of membrane importable without YADE)
+from membrane.case_folder import COMPLETE, DIVERGED
+from membrane.parameters import (
+    TABLE_2_CASES,
+    TABLE_2_DURATION,
+    SailParameters,
+    add_arguments,
+    from_arguments,
+)
+from sweeping import batch, grid
+from sweeping.report import report
+
+
+def command_line():
+    """Parsed sys.argv."""
+    parser = argparse.ArgumentParser(prog="sweep", description=__doc__.splitlines()[0])
+    commands = parser.add_subparsers(dest="command", required=True)
+    run = commands.add_parser("run", help="run what is missing, and report")
+    run.add_argument(
+        "--out", type=Path, default=Path("out/sweep"), metavar="DIR", help="default out/sweep"
+    )
+    run.add_argument(
+        "-j",
+        "--jobs",
+        type=int,
+        default=len(os.sched_getaffinity(0)),
+        metavar="N",
+        help="cases at once, each on one thread (default: the number of cores)",
+    )
+    run.add_argument(
+        "--checkpoint-every",
+        type=float,
+        default=60.0,
+        metavar="SECONDS",
+        help="wall time between two checkpoints of a case (default 60)",
+    )
+    run.add_argument("--no-pictures", action="store_true", help="draw no pictures of single cases")
+    add_arguments(run, several=TABLE_2_CASES)
+    run.set_defaults(duration=TABLE_2_DURATION)
+    only = commands.add_parser("report", help="report what is there")
+    only.add_argument("folder", type=Path, help="folder of the sweep, or of the cases")
+    return parser.parse_args()
+
+
+def main():
+    """Sweep or report; returns the exit status."""
+    arguments = command_line()
+    if arguments.command == "report":
+        return tell_report(arguments.folder)
+    if arguments.jobs < 1 or not arguments.checkpoint_every >= 0:
+        raise ValueError("--jobs must be >= 1 and --checkpoint-every >= 0")
+    axes = {name: getattr(arguments, name) for name in grid.AXES}
+    for name in axes:
+        setattr(arguments, name, getattr(SailParameters(), name))
+    cases = grid.grid(from_arguments(arguments), **axes)
+    folder = arguments.out.absolute()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit("sweep: terminated"))  # ends the jobs, too
+    with batch.alone(folder):
+        grid.plan(folder, cases)
+        batch.run(
+            folder,
+            cases,
+            arguments.jobs,
+            arguments.checkpoint_every,
+            not arguments.no_pictures,
+            tell,
+        )
+        return tell_report(folder)
+
+
+def tell(line):
+    """Tell the user a line."""
+    print(f"sweep: {line}", file=sys.stderr, flush=True)
+
+
+def tell_report(folder):
+    """Write the report and say what it says; returns 1 if a case is missing."""
+    found = report(folder)
+    states = [status.state for status in found]
+    complete, diverged = states.count(COMPLETE), states.count(DIVERGED)
+    print(f"{complete} of {len(found)} cases are complete, {diverged} diverged.")
+    for status in found:
+        if status.state == DIVERGED:
+            when = "in the spin-up" if status.time is None else f"at {status.time:.4g} s"
+            print(f"  {status.name} diverged {when}, because: {status.reason}")
+        elif status.state != COMPLETE:
+            print(f"  {status.name} is missing ({status.state}): {status.reason}")
+    print(f"Look at {folder / 'report.html'}")
+    return 0 if complete + diverged == len(found) else 1
+
+
+try:
+    sys.exit(main())
+except (ValueError, RuntimeError, OSError) as error:
+    sys.exit(f"sweep: {error}")
+except KeyboardInterrupt:
+    sys.exit("sweep: stopped; the same command goes on from here")

@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Runs the cases of a sweep by yade-batch, shows how far they are, and tells what stopped them."""
+
+import fcntl
+import os
+import signal
+import subprocess
+import time
+from contextlib import contextmanager
+from pathlib import Path
+
+from membrane.case_folder import FAILED, KILLED, MISSING, RUNNING, look, part_of
+from membrane.progress import Progress
+
+from .grid import CASES, table
+
+BATCH = "batch"  # folder of the table and of what yade-batch and the jobs say
+ROUNDS = 3  # how often in one sweep a case is started that was stopped from outside
+SCRIPT = Path(__file__).resolve().parents[1] / "case.py"
+LOOK = 0.5  # [s], between two looks at the cases
+
+
+@contextmanager
+def alone(folder):
+    """Hold the sweep's lock; RuntimeError if another process sweeps in this folder."""
+    (folder / BATCH).mkdir(parents=True, exist_ok=True)
+    with open(folder / BATCH / "lock", "w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise RuntimeError(f"another sweep is running in {folder}") from None
+        yield
+
+
+def run(folder, cases, jobs, checkpoint_every, pictures, tell):
+    """Run those cases that are not finished yet.
+
+    Cases that were stopped from outside are started again, alone, up to ROUNDS times.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the sweep.
+    cases : dict of SailParameters by name
+    jobs : int
+        How many run at once, each on one thread.
+    checkpoint_every : float
+        Wall time between two checkpoints of a case [s].
+    pictures : bool
+        Draw each case's own pictures.
+    tell : callable
+        Takes a line of text for the user.
+
+    Returns
+    -------
+    dict of Status by name
+        Of all cases.
+    """
+    here = folder / CASES
+    before = {name: look(here / name) for name in cases}
+    left = {name: p for name, p in cases.items() if not before[name].is_finished}
+    if len(left) < len(cases):
+        tell(f"{len(cases) - len(left)} of {len(cases)} cases are there already")
+    for name in left:
+        if before[name].state in (FAILED, KILLED):
+            tell(f"{name} {before[name].state} before: {before[name].reason}; it runs again")
+    for turn in range(ROUNDS):
+        if not left:
+            break
+        _batch(folder, cases, left, jobs, checkpoint_every, pictures)
+        now = {name: look(here / name) for name in left}
+        for name, status in now.items():
+            if status.state == FAILED:
+                tell(f"{name} failed: {status.reason}")
+            elif not status.is_finished:
+                again = "" if turn + 1 == ROUNDS else "; it runs again"
+                tell(f"{name}: {status.reason}{_last_words(folder, name)}{again}")
+        stopped = [n for n, status in now.items() if status.state in (KILLED, RUNNING, MISSING)]
+        left = {name: cases[name] for name in stopped}
+    return {name: look(here / name) for name in cases}
+
+
+def _batch(folder, cases, left, jobs, checkpoint_every, pictures):
+    """Run yade-batch over the cases `left` and show how far all `cases` are."""
+    batch = folder / BATCH
+    script = batch / SCRIPT.name  # yade-batch allows no blanks in paths
+    script.unlink(missing_ok=True)
+    script.symlink_to(SCRIPT)
+    own = {
+        name: {
+            "out": f"../{CASES}/{name}",
+            "checkpoint_every": checkpoint_every,
+            "no_pictures": not pictures,
+        }
+        for name in left
+    }
+    (batch / "table.txt").write_text(table(left, own))
+    command = ["yade-batch", f"--jobs={jobs}", "--job-threads=1", "--plot-update=-1"]
+    command += ["--disable-pynotify", "--log=@.log", "table.txt", SCRIPT.name]
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "Agg"}
+    environment.pop("OMP_NUM_THREADS", None)
+    progress = _CaseProgress(folder, cases)
+    with open(batch / "batch.log", "a") as log:
+        batch_process = subprocess.Popen(
+            command,
+            cwd=batch,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=log,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,  # so that it can be ended with all its jobs
+        )
+        try:
+            while batch_process.poll() is None:
+                progress.update()
+                time.sleep(LOOK)
+        finally:
+            if batch_process.poll() is None:
+                os.killpg(batch_process.pid, signal.SIGKILL)  # jobs go on from their checkpoints
+                batch_process.wait()
+    progress.close()
+
+
+class _CaseProgress:
+    """Cases done, running and left, and the time that will take."""
+
+    def __init__(self, folder, cases):
+        self.folder, self.cases = folder / CASES, cases
+        self.progress = Progress("sweep", 1.0)
+        self.start, self.first, self.done = time.monotonic(), None, set()
+
+    def update(self):
+        """Look at the cases that were not done and show how far all are."""
+        if len(self.done) == len(self.cases):
+            return
+        share, running = 0.0, 0
+        for name in self.cases.keys() - self.done:
+            status = look(self.folder / name)
+            if status.is_finished:
+                self.done.add(name)
+            elif status.state == RUNNING:
+                running += 1
+                share += _share(self.folder / name, self.cases[name].duration)
+        share = (share + len(self.done)) / len(self.cases)
+        if self.first is None:
+            self.first = share
+        text = f"{len(self.done)} of {len(self.cases)} cases done, {running} running"
+        gone = share - self.first
+        if gone > 0 and share < 1:
+            text += f", {(time.monotonic() - self.start) * (1 - share) / gone:.0f} s left"
+        self.progress.show(share, text)
+
+    def close(self):
+        """Show the end."""
+        self.update()
+        if len(self.done) < len(self.cases) and self.progress.stream.isatty():
+            self.progress.stream.write("\n")
+
+
+def _share(folder, duration):
+    """How much of its simulated time a case that runs has behind it."""
+    try:
+        with open(part_of(folder) / "history.csv", "rb") as history:
+            history.seek(-min(2000, os.fstat(history.fileno()).st_size), os.SEEK_END)
+            last = history.read().splitlines()[-2]  # the last one may still be incomplete
+        return min(0.99, float(last.split(b",")[0]) / duration)
+    except (OSError, ValueError, IndexError, ZeroDivisionError):
+        return 0.0
+
+
+def _last_words(folder, name):
+    """What a job said last that was stopped, for the user; "" if nothing."""
+    try:
+        lines = (folder / BATCH / f"{name}.log").read_text(errors="replace").splitlines()
+    except FileNotFoundError:
+        return ""
+    if any("JOB SUMMARY" in line for line in lines):
+        lines = lines[: next(i for i, line in enumerate(lines) if "JOB SUMMARY" in line)]
+    said = [line.strip() for line in lines if line.strip() and " %  " not in line]
+    return f"; it said last: {said[-1]}" if said else ""

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The cases of a sweep over alpha_c and beta, and the folder where they go."""
+
+import json
+from dataclasses import fields, replace
+
+from membrane.case_folder import PART, RESULT, finished
+from membrane.files import write_json
+from membrane.parameters import TABLE_2_CASES, SailParameters
+
+AXES = tuple(TABLE_2_CASES)  # alpha_crease, beta
+PLAN = "sweep.json"  # what a sweep consists of
+CASES = "cases"  # folder of the cases
+
+
+def text(value):
+    """A number as short as it can be without loss."""
+    return repr(value).removesuffix(".0") if isinstance(value, float) else str(value)
+
+
+def case_name(values):
+    """Name of the case with these values (dict by name), fit for a file."""
+    return "-".join(f"{name}_{text(value)}" for name, value in values.items())
+
+
+def grid(base, alpha_crease, beta):
+    """The cases of a grid.
+
+    Parameters
+    ----------
+    base : SailParameters
+        What they have in common.
+    alpha_crease, beta : sequences of float
+        [-]
+
+    Returns
+    -------
+    dict of SailParameters by name
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range or given twice.
+    """
+    for name, values in zip(AXES, (alpha_crease, beta)):
+        if len(set(values)) < len(values):
+            raise ValueError(f"{name}: {' '.join(map(text, values))}: a value is given twice")
+    cases = [{"alpha_crease": a, "beta": b} for a in alpha_crease for b in beta]
+    return {case_name(values): replace(base, **values) for values in cases}
+
+
+def plan(folder, cases):
+    """Note in `folder` which cases (dict of SailParameters by name) the sweep consists of.
+
+    Raises
+    ------
+    ValueError
+        If one is there already with other parameters.
+    """
+    (folder / CASES).mkdir(parents=True, exist_ok=True)
+    for name, p in cases.items():
+        finished(folder / CASES / name, p.as_dict())
+    write_json(folder / PLAN, {"cases": {name: p.as_dict() for name, p in cases.items()}})
+
+
+def case_folders(folder):
+    """Folders of the cases of a sweep, planned or found, each with the parameters planned or {}.
+
+    A case is found where there is a case.json, or a folder of an unfinished case, one or two levels
+    below `folder`.
+    """
+    planned = {}
+    if (folder / PLAN).exists():
+        cases = json.loads((folder / PLAN).read_text())["cases"]
+        planned = {folder / CASES / name: parameters for name, parameters in cases.items()}
+    found = {path.parent for level in ("*", "*/*") for path in folder.glob(f"{level}/{RESULT}")}
+    found = {path.with_name(path.name.removesuffix(PART)) for path in found}
+    for level in ("*", "*/*"):
+        parts = (path for path in folder.glob(level + PART) if path.is_dir())
+        found |= {path.with_name(path.name.removesuffix(PART)) for path in parts}
+    return {**planned, **{path: {} for path in sorted(found - set(planned))}}
+
+
+def table(cases, own):
+    """Text of a table for yade-batch.
+
+    Parameters
+    ----------
+    cases : dict of SailParameters by name
+    own : dict of dict
+        Further columns of each case, by its name.
+    """
+    default = SailParameters()
+    varied = [
+        item.name
+        for item in fields(SailParameters)
+        if item.name in AXES
+        or any(getattr(p, item.name) != getattr(default, item.name) for p in cases.values())
+    ]
+    others = list(next(iter(own.values())))
+    lines = [["description", *others, *varied]]
+    for name, p in cases.items():
+        values = [own[name][column] for column in others] + [getattr(p, v) for v in varied]
+        lines.append([name, *map(repr, values)])
+    return "".join(" ".join(line) + "\n" for line in lines)

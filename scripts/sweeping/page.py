@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The page of a sweep's report: one HTML file that shows pictures and tables."""
+
+from jinja2 import Environment, StrictUndefined
+
+TEMPLATE = """\
+<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width">
+<title>Sweep over {{ axes | join(" and ") }}</title>
+<style>
+body { font: 15px/1.45 sans-serif; color: #222; max-width: 68rem;
+       margin: 2rem auto; padding: 0 1rem; }
+h1 { font-size: 1.5rem; } h2 { font-size: 1.15rem; margin-top: 2rem; }
+figure { margin: 1rem 0; } figure img { max-width: 100%; }
+figcaption { color: #555; font-size: 0.9rem; }
+.wide { overflow-x: auto; }
+table { border-collapse: collapse; font-size: 0.85rem; }
+th, td { padding: 0.25rem 0.6rem; border-bottom: 1px solid #ddd;
+         text-align: left; vertical-align: top; }
+th { background: #f4f4f2; font-weight: 600; } th small { font-weight: 400; color: #666; }
+td:first-child { white-space: nowrap; }
+td.number { text-align: right; font-variant-numeric: tabular-nums; }
+tr.diverged td { background: #fdf0e3; }
+tr.failed td, tr.killed td, tr.running td, tr.missing td { background: #fbe6e6; }
+.shapes { display: grid; grid-template-columns: repeat(auto-fill, minmax(24rem, 1fr)); gap: 1rem; }
+</style>
+</head>
+<body>
+<h1>Sweep over {{ axes | join(" and ") }}</h1>
+<p>{{ cases | length }} cases:
+{%- for state, count in states.items() %} {{ count }} {{ state }}{{ "." if loop.last else "," }}
+{%- endfor %} All numbers are in <a href="{{ table }}">{{ table }}</a>.</p>
+
+{% for name, caption in pictures.items() %}
+<figure><img src="{{ name }}" alt="{{ caption }}"><figcaption>{{ caption }}</figcaption></figure>
+{% endfor %}
+
+{% if others %}
+<h2>Cases that are not complete</h2>
+<p>A diverged case is a result: run again it diverges again. Times in the reasons are on YADE's
+clock, which runs through the spin-up; those in the table count from the release. All other cases
+are missing; the sweep's command runs them, and them alone.</p>
+<div class="wide"><table>
+<tr><th>case</th><th>outcome</th><th>at <small>[s]</small></th><th>because</th></tr>
+{% for status in others %}
+<tr class="{{ status.state | replace("not begun", "missing") }}">
+<td>{{ status.name }}</td><td>{{ status.state }}</td>
+<td class="number">{% if status.state == "diverged" %}
+{{- "in the spin-up" if status.time is none else "%.4g" % status.time }}{% endif %}</td>
+<td>{{ status.reason }}</td></tr>
+{% endfor %}
+</table></div>
+{% endif %}
+
+<h2>All cases</h2>
+<div class="wide"><table>
+<tr><th>case</th><th>outcome</th>
+{%- for name, unit, meaning in columns %}<th title="{{ meaning }}">{{ name | replace("_", " ") }}
+{%- if unit != "-" %} <small>[{{ unit }}]</small>{% endif %}</th>{% endfor %}</tr>
+{% for case in cases %}
+<tr class="{{ case.state | replace("not begun", "missing") }}">
+<td>{% if case.place %}<a href="{{ case.place }}/">{{ case.name }}</a>
+{%- else %}{{ case.name }}{% endif %}</td>
+<td>{{ case.state }}</td>
+{%- for value in case["values"] %}<td class="number">{{ value or "–" }}</td>{% endfor %}</tr>
+{% endfor %}
+</table></div>
+<ul>
+{% for name, unit, meaning in columns if meaning %}
+<li><b>{{ name | replace("_", " ") }}</b>: {{ meaning }}</li>
+{% endfor %}
+</ul>
+
+{% if cases | selectattr("shapes") | list %}
+<h2>Shapes</h2>
+<div class="shapes">
+{% for case in cases if case.shapes %}
+<figure><a href="{{ case.shapes }}">
+<img src="{{ case.shapes }}" loading="lazy" alt="Shapes of {{ case.name }}"></a>
+<figcaption>{{ case.name }}</figcaption></figure>
+{% endfor %}
+</div>
+{% endif %}
+
+<h2>Parameters that all cases share</h2>
+<div class="wide"><table>
+<tr><th>parameter</th><th>value</th><th>unit</th><th>meaning</th><th>from</th></tr>
+{% for name, value, unit, meaning, source in common %}
+<tr><td>{{ name }}</td><td class="number">{{ value }}</td><td>{{ unit }}</td>
+<td>{{ meaning }}</td><td>{{ source }}</td></tr>
+{% endfor %}
+</table></div>
+
+<p>Made with
+{% for name, value in versions.items() %}
+{{ name }} {{ value }}{{ "." if loop.last else "," }}
+{% endfor %}
+</p>
+</body>
+</html>
+"""
+
+
+def render(**content):
+    """The page's HTML; all texts are escaped."""
+    environment = Environment(
+        autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined
+    )
+    return environment.from_string(TEMPLATE).render(**content)

@@ -1,0 +1,416 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Sweeps and cases: whole or not at all, killed at any moment and gone on with, byte for byte."""
+
+import csv
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import unittest
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+from membrane import sail
+from membrane.case_folder import DIVERGED, FAILED, KILLED, MISSING, look, part_of
+from membrane.parameters import TABLE_2_CASES, SailParameters
+from support import ROOT, long, scratch, yade_environment
+from yade import utils
+
+sys.path.append(str(ROOT / "scripts"))
+
+from sweeping import grid, results  # noqa: E402  (found only now)
+
+CASE, SWEEP = ROOT / "scripts" / "case.py", ROOT / "scripts" / "sweep.py"
+COARSE = ["--fold-lines", "3", "--inner-width", "0.15"]
+SHORT = [*COARSE, "--duration", "0.02", "--spin-up-tolerance", "1e-3"]
+TOO_LONG = [*COARSE, "--duration", "0.2", "--dt", "2.3e-5", "--force-time-step"]
+TOO_LONG += ["--spin-up-tolerance", "1e-3"]
+OFTEN = ["--checkpoint-every", "0"]
+WALL_TIME, BATCH = "wall_time.json", "batch"  # what may differ
+
+
+def start(command, **options):
+    """A process of its own group, so that it can be killed with all its children."""
+    return subprocess.Popen(
+        list(map(str, command)),
+        cwd=scratch(),
+        env=yade_environment(),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        start_new_session=True,
+        **options,
+    )
+
+
+def start_case(folder, *options):
+    return start(["yade", "-n", "-x", "-j1", CASE, "--out", folder, *options])
+
+
+def start_sweep(folder, *options):
+    return start(["/usr/bin/python3", SWEEP, "run", "--out", folder, *options])
+
+
+def children(pid):
+    """Ids of the processes that a process started."""
+    tasks = Path(f"/proc/{pid}/task").iterdir()
+    return [int(child) for task in tasks for child in (task / "children").read_text().split()]
+
+
+def kill(process):
+    """kill -9 of a process and of everything that it started, in whatever session."""
+    family = [process.pid]
+    for pid in family:
+        os.kill(pid, signal.SIGSTOP)  # so that it starts no more
+        family += children(pid)
+    for pid in family:
+        os.kill(pid, signal.SIGKILL)
+    process.communicate()
+
+
+def kill_last_child(process):
+    """kill -9 of the youngest descendant of a process: of a sweep, the case that runs."""
+    pid = process.pid
+    while children(pid):
+        pid = children(pid)[-1]
+    os.kill(pid, signal.SIGKILL)
+
+
+def tree(folder):
+    """Contents of all files that must be the same, by path."""
+    files = (path for path in folder.rglob("*") if path.is_file())
+    names = {path.relative_to(folder): path for path in files}
+    return {
+        str(name): path.read_bytes()
+        for name, path in names.items()
+        if name.name != WALL_TIME and name.parts[0] != BATCH
+    }
+
+
+def saved(folder):
+    """How many checkpoints the unfinished cases in a folder have saved."""
+    names = [path.name for path in folder.rglob("checkpoint/*")]
+    return sum(int(name) + 1 for name in names if name.isdecimal())
+
+
+class Killing:
+    """Runs a command, kills it after seeded amounts of work, and runs it to its end."""
+
+    def __init__(self, seed, folder, run):
+        self.random, self.folder, self.run = random.Random(seed), folder, run
+
+    def kill_after(self, most):
+        """Let it write up to `most` checkpoints; False if it came to its end before."""
+        process = self.run()
+        wanted = saved(self.folder) + self.random.randint(1, most)
+        while process.poll() is None and saved(self.folder) < wanted:
+            time.sleep(0.01)
+        time.sleep(self.random.uniform(0, 0.2))
+        if process.poll() is not None:
+            process.communicate()
+            return False
+        kill(process)
+        return True
+
+    def finish(self):
+        """Run it to its end; returns exit status and what it said."""
+        process = self.run()
+        said, _ = process.communicate()
+        return process.returncode, said
+
+
+class SweepTest(unittest.TestCase):
+    def same(self, expected, found):
+        """Two folders hold the same files."""
+        expected, found = tree(expected), tree(found)
+        self.assertGreater(len(expected), 5)
+        self.assertEqual(sorted(found), sorted(expected))
+        for name, content in expected.items():
+            self.assertTrue(found[name] == content, f"{name} differs")
+
+
+@lru_cache(maxsize=None)
+def diverged():
+    """Folder of a case that diverged without being disturbed."""
+    folder = scratch() / "diverged"
+    process = start_case(folder, *TOO_LONG)
+    said, _ = process.communicate()
+    assert process.returncode == 0, said
+    return folder
+
+
+class TestCase(SweepTest):
+    def test_diverged_case_is_a_result_with_time_and_reason(self):
+        found = json.loads((diverged() / "case.json").read_text())
+        self.assertEqual(found["outcome"], DIVERGED)
+        self.assertRegex(found["reason"], "from nowhere")
+        history = (diverged() / "history.csv").read_text().splitlines()
+        last = float(history[-1].split(",")[0])
+        self.assertTrue(last < found["time"] < last + 2e-3, (last, found["time"]))
+        self.assertTrue((diverged() / sail.LAST_GOOD).exists())
+
+    def test_killed_case_that_diverges_leaves_the_same_files(self):
+        folder = scratch() / "killed" / "diverged"
+        killing = Killing(
+            7, folder.parent, lambda: start_case(folder, *TOO_LONG, "--checkpoint-every", "0")
+        )
+        self.assertTrue(killing.kill_after(60))
+        self.assertFalse(folder.exists())
+        status, said = killing.finish()
+        self.assertEqual(status, 0, said)
+        self.same(diverged(), folder)
+        self.assertFalse(part_of(folder).exists())
+
+    def test_finished_case_is_left_alone_and_another_is_refused(self):
+        before = {path: path.stat().st_mtime_ns for path in diverged().rglob("*")}
+        process = start_case(diverged(), *TOO_LONG)
+        process.communicate()
+        self.assertEqual(process.returncode, 0)
+        process = start_case(diverged(), *TOO_LONG, "--beta", "3")
+        said, _ = process.communicate()
+        self.assertNotEqual(process.returncode, 0)
+        self.assertRegex(said, "case: .* holds another case: beta = 30.0, not 3.0")
+        self.assertNotIn("Traceback", said)
+        after = {path: path.stat().st_mtime_ns for path in diverged().rglob("*")}
+        self.assertEqual(after, before)
+
+    def test_failed_case_keeps_its_reason_and_leaves_no_result(self):
+        folder = scratch() / "refused_case"
+        process = start_case(folder, *COARSE, "--dt", "1e-4")
+        said, _ = process.communicate()
+        self.assertNotEqual(process.returncode, 0)
+        self.assertFalse(folder.exists())
+        status = look(folder)
+        self.assertEqual(status.state, FAILED)
+        self.assertRegex(status.reason, "dt = 0.0001 s must be <= .*critical")
+        self.assertIn(status.reason, said)
+
+
+class TestSweep(SweepTest):
+    OPTIONS = [*SHORT, "--no-pictures", *OFTEN, "--alpha-crease", "10", "100", "--beta", "3"]
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = scratch() / "sweep"
+        process = start_sweep(cls.folder, *cls.OPTIONS)
+        cls.said, _ = process.communicate()
+        cls.status = process.returncode
+
+    def test_sweep_reports_every_case(self):
+        self.assertEqual(self.status, 0, self.said)
+        self.assertIn("2 of 2 cases are complete, 0 diverged.", self.said)
+        self.assertRegex(self.said, r"\d of 2 cases done, \d running")
+        with open(self.folder / "cases.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(
+            [(r["alpha_crease"], r["beta"]) for r in rows], [("10", "3"), ("100", "3")]
+        )
+        for row in rows:
+            summary = json.loads((self.folder / "cases" / row["case"] / "summary.json").read_text())
+            self.assertEqual(row["outcome"], "complete")
+            self.assertEqual(str(summary["parameters"]["alpha_crease"]), row["alpha_crease"] + ".0")
+            self.assertEqual(float(row["final_rate"]), summary["measures"]["final_deployment_rate"])
+            self.assertEqual(row["period_s"], "")  # too short a run to see it
+        page = (self.folder / "report.html").read_text()
+        for name in ("deployment_rate.png", "phase_difference.png", "swing.png", "cases.csv"):
+            self.assertIn(f'"{name}"', page)
+            self.assertGreater((self.folder / name).stat().st_size, 200)
+
+    def test_sweep_killed_at_random_moments_leaves_the_same_files(self):
+        folder = scratch() / "killed_sweep"
+        killing = Killing(3, folder, lambda: start_sweep(folder, *self.OPTIONS))
+        kills = sum(killing.kill_after(25) for _ in range(2))
+        self.assertEqual(kills, 2)
+        status, said = killing.finish()
+        self.assertEqual(status, 0, said)
+        self.assertRegex(said, "killed before: it was stopped from outside")
+        self.same(self.folder, folder)
+
+    def test_lost_case_runs_alone_and_again_if_it_is_killed(self):
+        folder = scratch() / "lost"
+        shutil.copytree(self.folder, folder, symlinks=True)
+        lost, kept = sorted((folder / "cases").iterdir())
+        shutil.rmtree(lost)
+        before = {path: path.stat().st_mtime_ns for path in kept.rglob("*")}
+        process = start_sweep(folder, *self.OPTIONS)
+        while process.poll() is None and saved(folder) < 3:
+            time.sleep(0.01)
+        kill_last_child(process)
+        said, _ = process.communicate()
+        self.assertEqual(process.returncode, 0, said)
+        self.assertIn("1 of 2 cases are there already", said)
+        self.assertRegex(said, f"{lost.name}: it was stopped from outside.*; it runs again")
+        self.same(self.folder, folder)
+        self.assertEqual({path: path.stat().st_mtime_ns for path in kept.rglob("*")}, before)
+
+    def test_other_options_in_the_same_folder_are_refused(self):
+        process = start_sweep(self.folder, *self.OPTIONS, "--zeta", "0.5")
+        said, _ = process.communicate()
+        self.assertNotEqual(process.returncode, 0)
+        self.assertRegex(said, "sweep: .* holds another case: zeta = 0.02, not 0.5")
+        self.assertNotIn("Traceback", said)
+
+
+class TestReport(SweepTest):
+    """What is there and what is missing, without YADE."""
+
+    def report(self, folder):
+        """Exit status and output of `sweep.py report`, where no yade can be imported."""
+        blocked = scratch() / "no_yade"
+        (blocked / "yade").mkdir(parents=True, exist_ok=True)
+        (blocked / "yade" / "__init__.py").write_text("raise ImportError('YADE was imported')\n")
+        done = subprocess.run(
+            ["/usr/bin/python3", str(SWEEP), "report", str(folder)],
+            env={"PATH": os.environ["PATH"], "PYTHONPATH": str(blocked)},
+            capture_output=True,
+            text=True,
+        )
+        return done.returncode, done.stdout + done.stderr
+
+    def test_holes_are_told_with_their_reasons(self):
+        folder = scratch() / "holes"
+        parameters = json.loads((diverged() / "case.json").read_text())["parameters"]
+        base = SailParameters(**parameters)
+        cases = grid.grid(base, [10.0, 1000.0], [3.0, 30.0])
+        grid.plan(folder, cases)
+        here = folder / grid.CASES
+        shutil.copytree(diverged(), here / "alpha_crease_1000-beta_30")
+        failed = part_of(here / "alpha_crease_10-beta_3")
+        failed.mkdir()
+        (failed / "failure.json").write_text('{"reason": "a <b>reason</b>"}')
+        (part_of(here / "alpha_crease_10-beta_30") / "checkpoint").mkdir(parents=True)
+        status, said = self.report(folder)
+        self.assertEqual(status, 1, said)
+        self.assertIn("0 of 4 cases are complete, 1 diverged.", said)
+        self.assertRegex(said, r"1000-beta_30 diverged at 0\.\d+ s, because: .*from nowhere")
+        self.assertIn("alpha_crease_10-beta_3 is missing (failed): a <b>reason</b>", said)
+        with open(folder / "cases.csv", newline="") as file:
+            rows = {row["case"]: row for row in csv.DictReader(file)}
+        states = {name: row["outcome"] for name, row in rows.items()}
+        self.assertEqual(
+            states,
+            {
+                "alpha_crease_10-beta_3": FAILED,
+                "alpha_crease_10-beta_30": KILLED,
+                "alpha_crease_1000-beta_3": MISSING,
+                "alpha_crease_1000-beta_30": DIVERGED,
+            },
+        )
+        self.assertIn("last checkpoint", rows["alpha_crease_10-beta_30"]["reason"])
+        page = (folder / "report.html").read_text()
+        self.assertIn("a &lt;b&gt;reason", page)
+        self.assertIn("from nowhere", page)
+
+    def test_folders_of_cases_alone_can_be_reported(self):
+        folder = scratch() / "loose"
+        shutil.copytree(diverged(), folder / "mine")
+        status, said = self.report(folder)
+        self.assertEqual(status, 0, said)
+        self.assertIn("mine diverged", said)
+
+    def test_large_grid_is_drawn_in_panels(self):
+        folder = scratch() / "large"
+        content = json.loads((diverged() / "case.json").read_text())
+        alphas = (1.0, 10.0, 100.0, 1e3, 1e4)
+        for name, p in grid.grid(SailParameters(), alphas, [0.0, 3.0, 30.0]).items():
+            (folder / name).mkdir(parents=True)
+            shutil.copy(diverged() / "history.csv", folder / name)
+            told = {**content, "outcome": "complete", "parameters": p.as_dict()}
+            (folder / name / "case.json").write_text(json.dumps(told))
+        status, said = self.report(folder)
+        self.assertEqual(status, 0, said)
+        self.assertIn("15 of 15 cases are complete", said)
+        for name in ("deployment_rate.png", "phase_difference.png", "swing.png"):
+            self.assertEqual((folder / name).read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+
+    def test_folder_without_cases_is_a_sentence(self):
+        folder = scratch() / "empty"
+        folder.mkdir()
+        status, said = self.report(folder)
+        self.assertEqual(status, 1)
+        self.assertEqual(said.strip(), f"sweep: {folder} holds no case")
+
+
+class TestGrid(unittest.TestCase):
+    def test_default_grid_is_that_of_table_2(self):
+        cases = grid.grid(SailParameters(), **TABLE_2_CASES)
+        found = {(p.alpha_crease, p.beta) for p in cases.values()}
+        self.assertEqual(found, {(a, b) for a in (100, 1000) for b in (0, 3, 30)})
+        for p in cases.values():
+            self.assertEqual(replace(p, alpha_crease=1000.0, beta=30.0), SailParameters())
+
+    def test_names_tell_close_values_apart(self):
+        self.assertEqual(len(grid.grid(SailParameters(), [1e-9, 1.0, 1 + 1e-15], [0.0])), 3)
+
+    def test_value_given_twice_or_out_of_range_is_refused(self):
+        with self.assertRaisesRegex(ValueError, "beta: 3 3: a value is given twice"):
+            grid.grid(SailParameters(), [10.0], [3.0, 3.0])
+        with self.assertRaisesRegex(ValueError, "beta = -1"):
+            grid.grid(SailParameters(), [10.0], [-1.0])
+
+    def test_table_gives_yade_batch_the_same_parameters(self):
+        base = SailParameters(dt=1e-5 / 3, path="law2", force_time_step=True, gravity=0.0)
+        cases = grid.grid(base, [0.1, 1e3], [1 / 3])
+        own = {name: {"out": f"../{name}"} for name in cases}
+        path = scratch() / "table.txt"
+        path.write_text(grid.table(cases, own))
+        rows = utils.TableParamReader(str(path)).paramDict()
+        self.assertEqual(len(rows), 2)
+        for row in rows.values():
+            name = row.pop("description")
+            values = {column: eval(value) for column, value in row.items()}
+            self.assertEqual(values.pop("out"), f"../{name}")
+            self.assertEqual(replace(SailParameters(), **values), cases[name])
+
+
+class TestMeasures(unittest.TestCase):
+    def measure(self, until):
+        """Measures of a tip that lags by 30 degrees and then leads, with a period of 2 s."""
+        time = np.linspace(0, until, 1001)
+        columns = {
+            "time": time,
+            "phase_difference": -np.radians(30) * np.sin(np.pi * time),
+            "deployment_rate": time / until,
+        }
+        return results.measure(columns)
+
+    def test_swing_of_a_known_curve(self):
+        found = self.measure(2.0)
+        self.assertAlmostEqual(found["amplitude"], 30, places=6)
+        self.assertAlmostEqual(found["time_of_amplitude"], 0.5)
+        self.assertAlmostEqual(found["period"], 2)
+        self.assertAlmostEqual(found["time_of_rate_0.9"], 1.8, delta=0.003)
+
+    def test_run_too_short_has_no_period_and_no_amplitude(self):
+        found = self.measure(1.4)
+        self.assertAlmostEqual(found["amplitude"], 30, delta=1e-3)
+        self.assertIsNone(found["period"])
+        found = self.measure(0.4)
+        self.assertIsNone(found["amplitude"])
+        self.assertIsNone(found["period"])
+
+
+@long
+class TestReferencePath(SweepTest):
+    def test_law2_case_killed_leaves_the_same_files(self):
+        quiet, folder = scratch() / "law2", scratch() / "killed_law2" / "case"
+        options = [*SHORT, "--path", "law2", "--no-pictures", *OFTEN]
+        process = start_case(quiet, *options)
+        said, _ = process.communicate()
+        self.assertEqual(process.returncode, 0, said)
+        killing = Killing(11, folder.parent, lambda: start_case(folder, *options))
+        self.assertTrue(killing.kill_after(10))
+        self.assertTrue(killing.kill_after(10))
+        status, said = killing.finish()
+        self.assertEqual(status, 0, said)
+        self.same(quiet, folder)
+
+
+if __name__ == "__main__":
+    unittest.main()
