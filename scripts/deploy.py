@@ -13,6 +13,7 @@ from pathlib import Path
 from membrane import report, sail, window
 from membrane.batch import batch_row
 from membrane.parameters import from_arguments, parse
+from yade import utils
 
 
 def command_line():
