@@ -7,6 +7,7 @@
 namespace yade {
 
 class MembraneLedger;
+struct TimeStepState;
 
 class MembraneForceEngine : public GlobalEngine {
 public:
@@ -117,6 +118,7 @@ private:
     Real checkedStep_ = -1.;
     bool keepLengths_ = false; ///< the sweep's lengths are those of the ledger's last step
 
+    TimeStepState timeStepState(const Scene& in) const;
     void checkTimeStep();
     vector<Real> dampingCoefficients() const;
     vector<Vector3r> ofNodes(Vector3r (::membrane::Sweep::*force)(int) const) const;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneLedger.hpp"
+#include "FreeHub.hpp"
 #include <cmath>
 #include <core/Scene.hpp>
 
@@ -28,6 +29,9 @@ void MembraneLedger::action() {
     const Membrane& membrane = *forces->membrane;
     if (forces->lastStep() != scene->iter || !forces->madeSums())
         throw std::runtime_error("MembraneLedger: its MembraneForceEngine must run in the same step, before it");
+    const FreeHub* const hub = FreeHub::of(*scene, *forces);
+    if (hub && hub->lastStep() != scene->iter)
+        throw std::runtime_error("MembraneLedger: FreeHub must run in the same step, before it");
     const ::membrane::Sweep& sweep = forces->sweep();
     if (started && !lastLengths.empty() && lastLengths.size() != membrane.rest().sides.size())
         throw std::runtime_error("MembraneLedger: forces has another membrane now");
@@ -47,19 +51,21 @@ void MembraneLedger::action() {
     for (const int i : forces->nodesLeft()) {
         const State& state = *states[i];
         const Vector3r x = forces->positionSeen(i);
-        const Vector3r free = freeDirections(state), held = Vector3r::Ones() - free;
+        const bool onHub = hub && hub->turns(i); // what such a node gives or takes stays in the system
+        const Vector3r free = freeDirections(state);
+        const Vector3r held = onHub ? Vector3r(Vector3r::Zero()) : Vector3r(Vector3r::Ones() - free);
         const Vector3r total = forces->totalForce(i);
         const Vector3r fCrease = sweep.creaseForce(i), fDamping = sweep.dampingForce(i), fDrag = sweep.dragForce(i);
         const Vector3r internal = sweep.elasticForce(i) + fCrease + fDamping + fDrag, other = total - internal;
         const Vector3r after = state.vel;
         const Vector3r before =
-            free.isZero() ? turnedBack(after, state.angVel[2] * scene->dt) : forces->velocitySeen(i);
+            free.isZero() && !onHub ? turnedBack(after, state.angVel[2] * scene->dt) : forces->velocitySeen(i);
         const auto addPowers = [&](vector<Real>& powers, const Vector3r& v) {
             powers[0] += fCrease.dot(v);
             powers[1] += fDamping.dot(v);
             powers[2] += fDrag.dot(v);
             powers[3] -= internal.cwiseProduct(held).dot(v); // what holds a node bears the membrane's forces on it
-            powers[4] += other.cwiseProduct(free).dot(v);
+            powers[4] += other.cwiseProduct(Vector3r::Ones() - held).dot(v);
         };
         addPowers(arriving, before);
         addPowers(leaving, after);
@@ -70,6 +76,13 @@ void MembraneLedger::action() {
         // The integrator keeps gravity out of the scene's forces.
         const Vector3r pull = (total + state.mass * gravity).cwiseProduct(free);
         torque += x[0] * pull[1] - x[1] * pull[0];
+    }
+    if (hub) {
+        kinetic += hub->kinetic();
+        angularMomentum += hub->angularMomentum();
+        torque += hub->torque;
+        arriving[4] += hub->contactTorque * hub->spinBefore;
+        leaving[4] += hub->contactTorque * hub->spin;
     }
     time = scene->time;
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneWatch.hpp"
+#include "FreeHub.hpp"
 #include "mechanics/Drag.hpp"
 #include "mechanics/SideForce.hpp"
 #include <algorithm>
@@ -73,6 +74,10 @@ void MembraneWatch::keep() {
     for (const auto& body : *scene->bodies)
         newer_.bodies.push_back({body->id, body->state->pos, body->state->vel, body->state->angVel, body->state->ori});
     newer_.ledger = shared_ptr<MembraneLedger>(new MembraneLedger(*ledger));
+    if (const FreeHub* hub = FreeHub::of(*scene, *ledger->forces)) {
+        newer_.hubAngle = hub->angle;
+        newer_.hubSpin = hub->spin;
+    }
     newer_.time = scene->time + scene->dt; // the integrator has moved the bodies already
 }
 
@@ -87,6 +92,10 @@ Real MembraneWatch::restore() {
         state.ori = was.ori;
         state.vel = was.vel;
         state.angVel = was.angVel;
+    }
+    if (FreeHub* hub = FreeHub::of(*scene, *ledger->forces)) {
+        hub->angle = kept.hubAngle;
+        hub->spin = kept.hubSpin;
     }
     *ledger = *kept.ledger;
     ledger->forces->forgetLengths();

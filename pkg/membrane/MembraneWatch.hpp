@@ -42,6 +42,7 @@ private:
     struct Kept {
         vector<BodyState> bodies;
         shared_ptr<MembraneLedger> ledger;
+        Real hubAngle = 0., hubSpin = 0.; ///< of a FreeHub
         Real time = 0.;
     };
     Kept newer_, older_;

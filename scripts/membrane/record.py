@@ -4,6 +4,7 @@
 from pathlib import Path
 
 import numpy as np
+from yade import wrapper as yade
 
 from . import measures
 from .output import HistoryWriter, VtkSeries
@@ -34,6 +35,7 @@ UNITS = {
     "angular_impulse": "kg m2/s",
     "buckled_sides": "-",
 }
+HUB_UNITS = {"hub_spin": "rad/s", "hub_angle": "rad", "hub_energy": "J", "hub_torque": "N m"}
 
 
 class Recorder:
@@ -61,7 +63,8 @@ class Recorder:
     def __init__(self, folder, mesh, sail, spin_rate):
         self.mesh, self.sail, self.spin_rate = mesh, sail, spin_rate
         self.rows, self.frames, self.frame_times = [], [], []
-        self._history = HistoryWriter(Path(folder) / "history.csv", UNITS)
+        self._units = {**UNITS, **HUB_UNITS} if sail.hub else UNITS
+        self._history = HistoryWriter(Path(folder) / "history.csv", self._units)
         membrane = sail.membrane
         self._sides = np.array(membrane.sides)
         self._rest = np.array(membrane.restLengths)
@@ -82,7 +85,9 @@ class Recorder:
     def history(self, time):
         """Append the measures of the last step, whose forces acted `time` [s] after the release."""
         x = self.sail.last_positions()
-        lead = measures.tip_azimuths(self.mesh, x) - self.spin_rate * time
+        hub = self._hub()
+        turned = hub["hub_angle"] if hub else self.spin_rate * time
+        lead = measures.tip_azimuths(self.mesh, x) - turned
         if self._first_lead is None:
             self._first_lead = lead
         self._phases = phases = measures.nearest_turn(lead - self._first_lead, self._phases)
@@ -110,10 +115,23 @@ class Recorder:
             "angular_momentum": ledger.angularMomentum,
             "angular_impulse": ledger.angularImpulse,
             "buckled_sides": int(np.sum(length < self._critical)),
+            **hub,
         }
         self._history.write(row)
         self.rows.append(row)
         return row
+
+    def _hub(self):
+        """The free hub in the last step, at the time of its forces; nothing if it is driven."""
+        hub = self.sail.hub
+        if not hub:
+            return {}
+        return {
+            "hub_spin": 0.5 * (hub.spinBefore + hub.spin),
+            "hub_angle": hub.angle - hub.spin * yade.Omega().dt,
+            "hub_energy": hub.kinetic,
+            "hub_torque": hub.torque,
+        }
 
     def shape(self, time):
         """Append the shape of the last step, at `time` [s], to the ParaView series."""
@@ -135,7 +153,7 @@ class Recorder:
 
     def columns(self):
         """The rows as arrays (S,) by name."""
-        return {name: np.array([row[name] for row in self.rows]) for name in UNITS}
+        return {name: np.array([row[name] for row in self.rows]) for name in self._units}
 
     def close(self):
         """Close history.csv."""

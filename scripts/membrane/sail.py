@@ -21,6 +21,7 @@ from .spool import add_spool
 
 # The spin-up may take longer steps than the run: no accuracy is asked of it.
 SPIN_UP_STEP = 0.7
+SPIN_UP_TURNS = 15  # of the spool, after which to give up
 LAST_GOOD = "last_good.yade.gz"
 
 
@@ -69,6 +70,7 @@ def build(p):
         driven=facets + bodies[mesh.anchors].tolist(),
         touching=bodies[np.setdiff1d(mesh.tether_nodes, mesh.anchors)].tolist(),
         omega=p.omega,
+        hub_inertia=p.hub_inertia or None,
         gravity=(0, 0, -p.gravity),
         beta=p.beta,
         gamma=p.gamma,
@@ -97,7 +99,12 @@ def spin_up(sail, p):
         progress.show(float(share), f"t = {simulated:.3f} s  residual energy {residual:.1e}")
 
     return scene.spin_up(
-        sail, p.omega, tolerance=p.spin_up_tolerance, damping=p.spin_up_damping, on_batch=show
+        sail,
+        p.omega,
+        tolerance=p.spin_up_tolerance,
+        damping=p.spin_up_damping,
+        max_time=max(5.0, SPIN_UP_TURNS * 2 * np.pi / p.omega),
+        on_batch=show,
     )
 
 
