@@ -19,6 +19,8 @@ usage: scripts/run.sh COMMAND [options]
   parts [options]           what each part of the model changes and costs, into reference/parts.csv
   chart [options]           accuracy against time for every path, step and mesh, into
                             reference/chart.csv and chart.png
+  ikaros [options]          stage 2 of the flight sail on a free hub; options of scripts/ikaros.py
+  disk                      accuracy: a spinning disk against its closed form
   build                     compile the plugin into build/python
   format [--check]          format C++ and Python sources; --check changes nothing and fails where
                             a file is not formatted or a linter complains
@@ -195,6 +197,10 @@ verify)
     run_yade "$root/scripts/verify.py" "$@"
     ;;
 stability | parts | chart)
+    compile
+    run_yade "$root/scripts/$command.py" "$@"
+    ;;
+ikaros | disk)
     compile
     run_yade "$root/scripts/$command.py" "$@"
     ;;

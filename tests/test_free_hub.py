@@ -104,7 +104,7 @@ class TestClosedForms(SceneTest):
             self.assertAlmostEqual(found / expected, 1, delta=2e-3, msg=f"J = {inertia}")
 
     def test_yoyo_stops_the_hub_it_unwinds_from(self):
-        """Two masses on tethers wound onto the hub take its spin: w = w0 (c R2 - l2)/(c R2 + l2)."""
+        """Two masses wound onto the hub take its spin: w = w0 (c R2 - l2) / (c R2 + l2)."""
         made, radius, tips = yoyo()
         own = made.hub.totalInertia
         c = own / (2 * TIP) / radius**2 + 1

@@ -32,6 +32,12 @@ def add(kind, forces, bodies, spool, inertia, omega):
     return kind(forces=forces, nodes=nodes, inertia=inertia, spin=omega, **facets)
 
 
+def inertia(sail, positions):
+    """Moment of inertia about z [kg m2] of a free hub and its membrane, nodes at (N, 3) [m]."""
+    r2 = np.sum(np.asarray(positions)[:, :2] ** 2, axis=1)
+    return sail.hub.inertia + float(np.sum(sail.masses() * r2))
+
+
 def release(hub, omega, forces):
     """Let the hub go with spin `omega` [rad/s], under `forces` (N, 3) [N] on the membrane's nodes.
 

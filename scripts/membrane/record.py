@@ -7,6 +7,7 @@ import numpy as np
 from yade import wrapper as yade
 
 from . import measures
+from .hub import inertia
 from .output import HistoryWriter, VtkSeries
 
 UNITS = {
@@ -35,7 +36,13 @@ UNITS = {
     "angular_impulse": "kg m2/s",
     "buckled_sides": "-",
 }
-HUB_UNITS = {"hub_spin": "rad/s", "hub_angle": "rad", "hub_energy": "J", "hub_torque": "N m"}
+HUB_UNITS = {
+    "hub_spin": "rad/s",
+    "hub_angle": "rad",
+    "hub_energy": "J",
+    "hub_torque": "N m",
+    "inertia": "kg m2",
+}
 
 
 class Recorder:
@@ -85,7 +92,7 @@ class Recorder:
     def history(self, time):
         """Append the measures of the last step, whose forces acted `time` [s] after the release."""
         x = self.sail.last_positions()
-        hub = self._hub()
+        hub = self._hub(x)
         turned = hub["hub_angle"] if hub else self.spin_rate * time
         lead = measures.tip_azimuths(self.mesh, x) - turned
         if self._first_lead is None:
@@ -121,8 +128,8 @@ class Recorder:
         self.rows.append(row)
         return row
 
-    def _hub(self):
-        """The free hub in the last step, at the time of its forces; nothing if it is driven."""
+    def _hub(self, x):
+        """The free hub in the last step, with nodes at `x`; nothing if it is driven."""
         hub = self.sail.hub
         if not hub:
             return {}
@@ -131,6 +138,7 @@ class Recorder:
             "hub_angle": hub.angle - hub.spin * yade.Omega().dt,
             "hub_energy": hub.kinetic,
             "hub_torque": hub.torque,
+            "inertia": inertia(self.sail, x),
         }
 
     def shape(self, time):
