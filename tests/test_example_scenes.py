@@ -36,6 +36,19 @@ class TestIkaros(unittest.TestCase):
         self.assertNotIn("Traceback", done.stdout + done.stderr)
 
 
+class TestGuide(unittest.TestCase):
+    def test_its_own_mesh_opens_and_keeps_its_energy(self):
+        text = (ROOT / "reference" / "guide.md").read_text()
+        script = scratch() / "sheet.py"
+        script.write_text(text.split("```python\n")[1].split("```")[0])
+        done = run_yade(script, folder=scratch())
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = re.search(r"opened to (\d+) degrees; energy from nowhere (\S+) J", done.stdout)
+        self.assertGreater(int(said[1]), 120)  # from 60
+        self.assertLess(abs(float(said[2])), 1e-3)  # of some 0.03 J
+        self.assertEqual(len(list((scratch() / "sheet").glob("*.vtu"))), 40)
+
+
 class TestDisk(unittest.TestCase):
     def test_errors_fall_with_the_square_of_the_cells(self):
         done = run_yade(ROOT / "scripts" / "disk.py", folder=scratch())
