@@ -31,6 +31,8 @@ usage: scripts/run.sh COMMAND [options]
                             options by `scripts/run.sh sweep --help`
   case --out DIR [options]  one deployment that leaves all its results or none and, run again
                             after it was stopped, goes on; options by `scripts/run.sh case --help`
+  ikaros [options]          stage 2 of the flight sail on a free hub; options of scripts/ikaros.py
+  disk                      accuracy: a spinning disk against its closed form
   build                     compile the plugin into build/python
   format [--check]          format C++ and Python sources; --check changes nothing and fails where
                             a file is not formatted or a linter complains
@@ -279,6 +281,10 @@ animate)
     need "${animation_packages[@]}"
     compile
     run_yade "$root/scripts/animate.py" "$@"
+    ;;
+ikaros | disk)
+    compile
+    run_yade "$root/scripts/$command.py" "$@"
     ;;
 build) compile ;;
 format) format "$@" ;;

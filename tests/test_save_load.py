@@ -49,6 +49,8 @@ def bits(net, ledger):
     """All numbers of the state: nodes, and the ledger's own."""
     numbers = [value for value in ledger.dict().values() if isinstance(value, (bool, float))]
     derived = [ledger.crease, ledger.total, ledger.balance]
+    hub = engines_by_class().get("FreeHub")
+    derived += [hub.spin, hub.angle, hub.torque] if hub else []
     return node_states(net), np.array([*numbers, *derived, O.time, O.dt, O.iter], dtype=float)
 
 
@@ -103,6 +105,14 @@ class TestContinuation(unittest.TestCase):
         for options in FUSED:
             with self.subTest(**options):
                 self.sail(path="fused", **options)
+
+    def test_deploying_sail_on_a_free_hub(self):
+        for path in scene.PATHS:
+            with self.subTest(path):
+                release_sail(**UNUSUAL, path=path, hub_inertia=1e-5)
+                scene.advance(AHEAD)
+                self.assertNotEqual(engines_by_class()["FreeHub"].torque, 0)
+                self.check("hub")
 
     def test_tether_wound_onto_the_turning_spool(self):
         for path in scene.PATHS:

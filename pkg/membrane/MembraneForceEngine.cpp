@@ -2,6 +2,7 @@
 #include "MembraneForceEngine.hpp"
 #include "Buffers.hpp"
 #include "Faults.hpp"
+#include "FreeHub.hpp"
 #include "MembraneLedger.hpp"
 #include "TimeStepState.hpp"
 #include "mechanics/CriticalTimeStep.hpp"
@@ -37,14 +38,15 @@ bool isHeld(const State& state) {
 }
 
 Vector3r centredVelocity(const State& state, const Vector3r& seenPosition, const Vector3r& seenVelocity, Real dt) {
-    // The velocity that moved the node to where it is: a driven one has got its next already.
-    const bool driven = isHeld(state);
-    const Vector3r& arrived = driven ? seenVelocity : state.vel;
-    const Real rounding = 1e-15 * state.pos.norm(), moved = dt * arrived.norm();
-    // Not so if someone has put it elsewhere, given it another velocity or changed the step.
-    if (!((state.pos - seenPosition - dt * arrived).norm() <= 1e-9 * moved + rounding)) return state.vel;
-    const Real share = driven ? 0.5 : 1.5;
-    return share * state.vel + (1. - share) * seenVelocity;
+    const auto cameAt = [&](const Vector3r& velocity) {
+        const Real rounding = 1e-15 * state.pos.norm(), moved = dt * velocity.norm();
+        return (state.pos - seenPosition - dt * velocity).norm() <= 1e-9 * moved + rounding;
+    };
+    // A node has come here at its present velocity, unless it is driven and has got its next already.
+    if (cameAt(state.vel)) return 1.5 * state.vel - 0.5 * seenVelocity;
+    if (isHeld(state) && cameAt(seenVelocity)) return 0.5 * state.vel + 0.5 * seenVelocity;
+    // Someone has put it elsewhere, given it another velocity or changed the step.
+    return state.vel;
 }
 
 void MembraneForceEngine::postLoad(MembraneForceEngine&) {
@@ -145,8 +147,12 @@ void MembraneForceEngine::stopDiverged() const {
 
 void MembraneForceEngine::findEngines(const Scene& in) const {
     ledgers_.clear();
+    hubs_.clear();
     for (const auto& engine : in.engines)
-        if (auto* found = dynamic_cast<MembraneLedger*>(engine.get())) ledgers_.push_back(found);
+        if (auto* const ledger = dynamic_cast<MembraneLedger*>(engine.get()))
+            ledgers_.push_back(ledger);
+        else if (auto* const hub = dynamic_cast<FreeHub*>(engine.get()))
+            hubs_.push_back(hub);
 }
 
 void MembraneForceEngine::findEnginesIfOthers(const Scene& in) const {
@@ -163,6 +169,13 @@ void MembraneForceEngine::findEnginesIfOthers(const Scene& in) const {
 MembraneLedger* MembraneForceEngine::ledger(const Scene& in) const {
     findEnginesIfOthers(in);
     for (MembraneLedger* const found : ledgers_)
+        if (!found->dead && found->forces.get() == this) return found;
+    return nullptr;
+}
+
+FreeHub* MembraneForceEngine::hub(const Scene& in) const {
+    findEnginesIfOthers(in);
+    for (FreeHub* const found : hubs_)
         if (!found->dead && found->forces.get() == this) return found;
     return nullptr;
 }
@@ -191,10 +204,16 @@ void MembraneForceEngine::computeForces() {
                                sweep_.creaseForce(i) + sweep_.dampingForce(i) + sweep_.dragForce(i));
 }
 
+TimeStepState MembraneForceEngine::timeStepState(const Scene& in) const {
+    TimeStepState now(*membrane, states_, airDensity);
+    if (const FreeHub* hub = this->hub(in)) hub->addTo(now.masses);
+    return now;
+}
+
 void MembraneForceEngine::checkTimeStep() {
     if (!forceTimeStep) {
         writeBack();
-        const TimeStepState now(*membrane, states_, airDensity);
+        const TimeStepState now = timeStepState(*scene);
         const vector<Real> damping = dampingCoefficients();
         if (!::membrane::withinCriticalTimeStep({membrane->rest(), now.masses, now.positions, damping, now.drag, law()},
                                                 scene->dt)) {
@@ -263,7 +282,7 @@ Real MembraneForceEngine::criticalTimeStep() {
         states_ = membrane->states(*current);
         membrane->checkUnchanged();
     }
-    const TimeStepState now(*membrane, states_, airDensity);
+    const TimeStepState now = timeStepState(*current);
     const vector<Real> damping = dampingCoefficients();
     return ::membrane::criticalTimeStep({membrane->rest(), now.masses, now.positions, damping, now.drag, law()});
 }

@@ -7,7 +7,9 @@
 
 namespace yade {
 
+class FreeHub;
 class MembraneLedger;
+struct TimeStepState;
 
 class MembraneForceEngine : public GlobalEngine {
 public:
@@ -29,6 +31,9 @@ public:
     vector<Vector3r> dampingForces() const { return ofNodes(&::membrane::Sweep::dampingForce); }
     vector<Vector3r> dragForces() const { return ofNodes(&::membrane::Sweep::dragForce); }
     boost::python::object lastPositionsBytes() const;
+
+    /// The free hub that this engine's forces turn, or none.
+    FreeHub* hub(const Scene& in) const;
 
     /// For the ledger: the nodes that the sweep does not move, and everything summed over the others.
     virtual const vector<int>& nodesLeft() const { return allNodes_; }
@@ -123,10 +128,12 @@ private:
     mutable StepGuard guard_;
     const Scene* preparedFor_ = nullptr;
     mutable vector<std::pair<const Engine*, const std::type_info*>> knownEngines_;
-    mutable vector<MembraneLedger*> ledgers_; ///< of this engine, in the order of O.engines
+    mutable vector<MembraneLedger*> ledgers_; ///< in the order of O.engines
+    mutable vector<FreeHub*> hubs_;
     Real checkedStep_ = -1.;
     bool keepLengths_ = false; ///< the sweep's lengths are those of the ledger's last step
 
+    TimeStepState timeStepState(const Scene& in) const;
     void checkTimeStep();
     vector<Real> dampingCoefficients() const;
     vector<Vector3r> ofNodes(Vector3r (::membrane::Sweep::*force)(int) const) const;

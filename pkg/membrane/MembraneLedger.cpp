@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneLedger.hpp"
+#include "FreeHub.hpp"
 #include "RunEnd.hpp"
 #include <array>
 #include <cmath>
@@ -34,6 +35,9 @@ void MembraneLedger::action() {
     const Membrane& membrane = *forces->membrane;
     if (forces->lastStep() != scene->iter || forces->madeSums() == ::membrane::Sums::none)
         throw std::runtime_error("MembraneLedger: its MembraneForceEngine must run in the same step, before it");
+    const FreeHub* const hub = forces->hub(*scene);
+    if (hub && hub->lastStep() != scene->iter)
+        throw std::runtime_error("MembraneLedger: FreeHub must run in the same step, before it");
     const ::membrane::Sweep& sweep = forces->sweep();
     if (started && !lastLengths.empty() && lastLengths.size() != membrane.rest().sides.size())
         throw std::runtime_error("MembraneLedger: forces has another membrane now");
@@ -50,19 +54,21 @@ void MembraneLedger::action() {
     for (const int i : forces->nodesLeft()) {
         const State& state = *states[i];
         const Vector3r x = forces->positionSeen(i);
-        const Vector3r free = freeDirections(state), held = Vector3r::Ones() - free;
+        const bool onHub = hub && hub->turns(i); // what such a node gives or takes stays in the system
+        const Vector3r free = freeDirections(state);
+        const Vector3r held = onHub ? Vector3r(Vector3r::Zero()) : Vector3r(Vector3r::Ones() - free);
         const Vector3r total = forces->totalForce(i);
         const Vector3r fCrease = sweep.creaseForce(i), fDamping = sweep.dampingForce(i), fDrag = sweep.dragForce(i);
         const Vector3r internal = sweep.elasticForce(i) + fCrease + fDamping + fDrag, other = total - internal;
         const Vector3r after = state.vel;
         const Vector3r before =
-            free.isZero() ? turnedBack(after, state.angVel[2] * scene->dt) : forces->velocitySeen(i);
+            free.isZero() && !onHub ? turnedBack(after, state.angVel[2] * scene->dt) : forces->velocitySeen(i);
         const auto addPowers = [&](std::array<Real, 6>& powers, const Vector3r& v) {
             powers[0] += fCrease.dot(v);
             powers[1] += fDamping.dot(v);
             powers[2] += fDrag.dot(v);
             powers[3] -= internal.cwiseProduct(held).dot(v); // what holds a node bears the membrane's forces on it
-            powers[4] += other.cwiseProduct(free).dot(v);
+            powers[4] += other.cwiseProduct(Vector3r::Ones() - held).dot(v);
         };
         const Vector3r between = 0.5 * (before + after);
         addPowers(mean, between);
@@ -74,6 +80,13 @@ void MembraneLedger::action() {
         // The integrator keeps gravity out of the scene's forces.
         const Vector3r pull = (total + state.mass * gravity).cwiseProduct(free);
         mean[5] += x[0] * pull[1] - x[1] * pull[0];
+    }
+    if (hub) {
+        kineticNow += hub->kinetic();
+        momentumNow += hub->angularMomentum();
+        mean[5] += hub->torque;
+        mean[4] += hub->contactTorque * 0.5 * (hub->spinBefore + hub->spin);
+        arriving[4] += hub->contactTorque * hub->spinBefore;
     }
     arriving[5] = mean[5]; // the impulse's torque is that of this step all along
 

@@ -26,13 +26,14 @@ public:
         "Energies of a :yref:`Membrane` and the work done on it, at the time of this step's forces. The leapfrog's velocities v-, v+ lie half a "
         "step before and after; with m v- v+ / 2 for kinetic energy, and the mean of two steps' forces times the velocity between them for work, "
         "energy is conserved to the last digit in a linear system at any time step. Put it right after NewtonIntegrator, and set its damping to 0. "
-        "Blocked directions of a node count as driven; a node with all translations blocked turns about the z axis with its angVel. Where a "
+        "Blocked directions of a node count as driven; a node with all translations blocked turns about the z axis with its angVel. A :yref:`FreeHub` belongs to the "
+        "system with its nodes: its energy and angular momentum are counted, and no work of driving. Where a "
         "side buckles or becomes taut within a step, the mean force misses a part of its energy: kinkError, nearly all of the balance.",
         ((shared_ptr<MembraneForceEngine>, forces, , , "The engine of the crease, damping and drag forces."))
         ((Vector3r, gravity, Vector3r::Zero(), , "NewtonIntegrator's gravity [m/s²]."))
         ((bool, started, false, Attr::readonly, "Whether the first step was seen."))
         ((Real, time, 0., Attr::readonly, "Time to which all values belong [s]."))
-        ((Real, kinetic, 0., Attr::readonly, "Kinetic energy of the free nodes [J], m v- v+ / 2."))
+        ((Real, kinetic, 0., Attr::readonly, "Kinetic energy of the free nodes [J], m v- v+ / 2, and of a free hub."))
         ((Real, elastic, 0., Attr::readonly, "Strain energy of all sides [J]."))
         ((Real, potential, 0., Attr::readonly, "Potential energy of gravity of the free nodes [J], 0 at the origin."))
         ((Real, initial, 0., Attr::readonly, "kinetic + elastic + potential at the first step [J]."))
@@ -43,8 +44,8 @@ public:
         ((Real, drivenWork, 0., Attr::readonly, "Work that driven nodes do on the membrane [J]: the spool through the tethers' ends."))
         ((Real, contactWork, 0., Attr::readonly, "Work of all other forces on free nodes [J]: contact of the tethers with the spool."))
         ((Real, kinkError, 0., Attr::readonly, "Energy [J] that sides gained beyond the work of their mean forces, where they buckled or became taut within a step: the integrator's error."))
-        ((Real, angularMomentum, 0., Attr::readonly, "Angular momentum of the free nodes about z [N m s]."))
-        ((Real, angularImpulse, 0., Attr::readonly, "Integral of the torque about z of all forces on the free nodes [N m s]."))
+        ((Real, angularMomentum, 0., Attr::readonly, "Angular momentum of the free nodes and of a free hub about z [N m s]."))
+        ((Real, angularImpulse, 0., Attr::readonly, "Integral of the torque about z of all forces on the free nodes and on a free hub [N m s]."))
         ((Real, initialAngularMomentum, 0., Attr::readonly, "Angular momentum about z at the first step [N m s]."))
         ((int, period, 1, Attr::triggerPostLoad, "Steps between two times at which all values are brought up to date, > 0; also done in the first step, when O.dt changes, while the works of a "
             "single step are more than a thousandth of the energies, and at the end of a run. "

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneWatch.hpp"
+#include "FreeHub.hpp"
 #include "mechanics/Drag.hpp"
 #include "mechanics/SideForce.hpp"
 #include <algorithm>
@@ -70,6 +71,7 @@ Real MembraneWatch::allEnergy() const {
 
 void MembraneWatch::keep() {
     olderBodies.swap(newerBodies);
+    olderHub = newerHub;
     olderLedger = newerLedger;
     olderTime = newerTime;
     newerBodies.clear();
@@ -83,6 +85,7 @@ void MembraneWatch::keep() {
         const Quaternionr turned = state.ori;
         newerBodies.insert(newerBodies.end(), turned.coeffs().data(), turned.coeffs().data() + 4);
     }
+    if (const FreeHub* hub = ledger->forces->hub(*scene)) newerHub = {hub->angle, hub->spin};
     newerLedger = shared_ptr<MembraneLedger>(new MembraneLedger(*ledger));
     newerLedger->forces.reset();         // else a save would fetch the present lengths into it
     newerTime = scene->time + scene->dt; // the integrator has moved the bodies already
@@ -104,6 +107,11 @@ Real MembraneWatch::restore() {
         state.vel = Vector3r(was + 4);
         state.angVel = Vector3r(was + 7);
         state.ori = Quaternionr(was + 10);
+    }
+    const vector<Real>& hubWas = olderLedger ? olderHub : newerHub;
+    if (FreeHub* hub = forces->hub(*scene); hub && hubWas.size() == 2) {
+        hub->angle = hubWas[0];
+        hub->spin = hubWas[1];
     }
     *ledger = book;
     ledger->forces = forces;

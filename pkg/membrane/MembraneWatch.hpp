@@ -27,6 +27,8 @@ public:
         ((long, looked, -1, (Attr::readonly | Attr::hidden), "Step of the last look at the creases; -1: none yet."))
         ((vector<Real>, newerBodies, , (Attr::readonly | Attr::hidden), "The state kept last: id, pos, vel, angVel and ori of every body in turn."))
         ((vector<Real>, olderBodies, , (Attr::readonly | Attr::hidden), "The state kept before that."))
+        ((vector<Real>, newerHub, , (Attr::readonly | Attr::hidden), "Angle [rad] and spin [rad/s] of its FreeHub, if any."))
+        ((vector<Real>, olderHub, , (Attr::readonly | Attr::hidden), "The same of the state kept before."))
         ((shared_ptr<MembraneLedger>, newerLedger, , (Attr::readonly | Attr::hidden), "Its ledger, without forces."))
         ((shared_ptr<MembraneLedger>, olderLedger, , (Attr::readonly | Attr::hidden), "Its ledger, without forces."))
         ((Real, newerTime, 0., (Attr::readonly | Attr::hidden), "Its time [s]."))

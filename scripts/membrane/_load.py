@@ -19,6 +19,7 @@ CLASSES = (
     "MembraneIntegrator",
     "CentrifugalField",
     "SpoolRotation",
+    "FreeHub",
     "MembraneLedger",
     "MembraneTimeStepper",
     "MembraneWatch",

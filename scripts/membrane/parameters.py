@@ -70,6 +70,9 @@ class SailParameters:
     )
     air_density: float = _parameter(1.2e-3, "kg/m3", ASSUMED, "air left in the chamber; 0: none")
     gravity: float = _parameter(9.81, "m/s2", ASSUMED, "along -z")
+    hub_inertia: float = _parameter(
+        0.0, "kg m2", ASSUMED, "of a spool that turns freely, about the axis; 0: driven at omega"
+    )
     tether_segments: int = _parameter(4, "-", ASSUMED, "segments of each tether", least=1)
     tether_stiffness: float = _parameter(200.0, "N", ASSUMED, "EA of the tethers", above=True)
     tether_density: float = _parameter(

@@ -5,8 +5,10 @@ import json
 from pathlib import Path
 
 import numpy as np
+from yade import wrapper as yade
 
 from . import measures
+from .hub import inertia
 from .output import HistoryWriter, VtkSeries, read_history
 
 LEDGER_UNITS = {
@@ -66,6 +68,13 @@ SHAPE_FIELDS = {
     "fold": {"unit": "-", "side": "1 mountain, -1 valley, 0 no fold line"},
     "kind": {"unit": "-", "side": "0 film, 1 crease, 2 tether"},
 }
+HUB_UNITS = {
+    "hub_spin": "rad/s",
+    "hub_angle": "rad",
+    "hub_energy": "J",
+    "hub_torque": "N m",
+    "inertia": "kg m2",
+}
 
 
 class Recorder:
@@ -96,6 +105,8 @@ class Recorder:
 
     def __init__(self, folder, mesh, sail, spin_rate, state=None):
         self.mesh, self.sail, self.spin_rate = mesh, sail, spin_rate
+        if sail.hub:
+            self.units = {**self.units, **HUB_UNITS}
         state = state or {
             "history_size": None,
             "times": [],
@@ -147,7 +158,9 @@ class Recorder:
 
     def measured(self, time, x):
         """Measures of the shape `x` (N, 3) [m] at `time` [s] by name."""
-        lead = measures.tip_azimuths(self.mesh, x) - self.spin_rate * time
+        hub = self.sail.hub
+        turned = _angle(hub) if hub else self.spin_rate * time
+        lead = measures.tip_azimuths(self.mesh, x) - turned
         if self._first_lead is None:
             self._first_lead = lead.tolist()
         self._phases = phases = measures.nearest_turn(lead - self._first_lead, self._phases)
@@ -180,6 +193,20 @@ class Recorder:
             "angular_momentum": ledger.angularMomentum,
             "angular_impulse": ledger.angularImpulse,
             "buckled_sides": int(np.sum(length < self._critical)),
+            **self._hub(x),
+        }
+
+    def _hub(self, x):
+        """The free hub in the last step, with nodes at `x`; nothing if it is driven."""
+        hub = self.sail.hub
+        if not hub:
+            return {}
+        return {
+            "hub_spin": 0.5 * (hub.spinBefore + hub.spin),
+            "hub_angle": _angle(hub),
+            "hub_energy": hub.kinetic,
+            "hub_torque": hub.torque,
+            "inertia": inertia(self.sail, x),
         }
 
     def shape(self, time):
@@ -234,3 +261,8 @@ def _single_precision(fields):
         name: values.astype(np.float32) if values.dtype == float else values
         for name, values in fields.items()
     }
+
+
+def _angle(hub):
+    """Angle [rad] of a free hub in the last step, which has turned it on since."""
+    return hub.angle - hub.spin * yade.Omega().dt

@@ -23,6 +23,7 @@ from .spool import add_spool
 
 # The spin-up may take longer steps than the run: no accuracy is asked of it.
 SPIN_UP_STEP = 0.7
+SPIN_UP_TURNS = 15  # of the spool, after which to give up
 LAST_GOOD = "last_good.yade.gz"
 SPIN_UP, RUN = "spin_up", "run"  # stages
 
@@ -88,6 +89,7 @@ def build(p):
         driven=facets + bodies[mesh.anchors].tolist(),
         touching=bodies[np.setdiff1d(mesh.tether_nodes, mesh.anchors)].tolist(),
         omega=p.omega,
+        hub_inertia=p.hub_inertia or None,
         gravity=(0, 0, -p.gravity),
         beta=p.beta,
         gamma=p.gamma,
@@ -129,6 +131,7 @@ def spin_up(sail, p, begun=None, keep=None, look=look_away):
         p.omega,
         tolerance=p.spin_up_tolerance,
         damping=p.spin_up_damping,
+        max_time=max(5.0, SPIN_UP_TURNS * 2 * np.pi / p.omega),
         on_batch=show,
         begun=begun,
         keep=keep,

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from yade import wrapper as yade
 
-from . import _load, spool
+from . import _load, hub, spool
 from .progress import stages
 
 LARGE = 100_000  # nodes: adding so many takes about a second, so that progress is shown
@@ -46,6 +46,8 @@ class MembraneScene:
         Dead as long as a fused membrane is alone in the scene.
     driven : list of int
         Ids of the bodies that turn with the spool.
+    hub : FreeHub or None
+        Turns the driven bodies in place of `rotation`; dead during spin-up.
     """
 
     membrane: object
@@ -58,6 +60,7 @@ class MembraneScene:
     watch: object = None
     resetter: object = None
     driven: list = field(default_factory=list)
+    hub: object = None
 
     def positions(self):
         """Present positions of the nodes, (N, 3) [m]."""
@@ -161,6 +164,7 @@ def set_engines(
     driven=(),
     touching=(),
     omega=0.0,
+    hub_inertia=None,
     gravity=(0.0, 0.0, 0.0),
     beta=0.0,
     gamma=100.0,
@@ -188,6 +192,9 @@ def set_engines(
         Ids of bodies that turn about z at `omega` [rad/s]: spool facets, ends of tethers.
     touching : sequence of int
         Ids of the membrane's bodies that touch other bodies; empty: no collider at all.
+    hub_inertia : float, optional
+        The driven bodies belong to a hub of this moment of inertia about z [kg m2] that turns
+        freely: a FreeHub; `omega` is its spin when it begins. Default: they are driven at `omega`.
     gravity : 3 floats
         [m/s2].
     beta, gamma, theta0, crease_law, zeta, air_density
@@ -235,10 +242,15 @@ def set_engines(
         collider = [_collider()]
         geometry.append(yade.Ig2_Facet_Sphere_ScGeom())
         physics.append(yade.Ip2_FrictMat_FrictMat_FrictPhys())
-        laws.append(yade.Law2_ScGeom_FrictPhys_CundallStrack())
+        # A facet's torque must be that about its place: a FreeHub takes it.
+        laws.append(yade.Law2_ScGeom_FrictPhys_CundallStrack(sphericalBodies=False))
     facets = [i for i in driven if isinstance(scene.bodies[i].shape, yade.Facet)]
     turning = spool.turning(facets, touching, omega, _plugin["SpoolRotation"])
     turned = sorted(set(driven).difference(facets))
+    free_hub = []
+    if hub_inertia is not None:
+        free_hub = [hub.add(_plugin["FreeHub"], forces, turned, turning, hub_inertia, omega)]
+        turned = []  # the hub turns them
     rotation = yade.RotationEngine(
         ids=turned,
         angularVelocity=omega,
@@ -268,6 +280,7 @@ def set_engines(
         centrifugal,
         forces,
         newton,
+        *free_hub,
         ledger,
         *watch,
     ]
@@ -282,6 +295,7 @@ def set_engines(
         watch[0] if watch else None,
         resetter,
         list(driven),
+        free_hub[0] if free_hub else None,
     )
 
 
@@ -382,6 +396,7 @@ def compute_forces(sail):
         yade.NewtonIntegrator,
         yade.KinematicEngine,
         _plugin["SpoolRotation"],
+        _plugin["FreeHub"],
         _plugin["MembraneLedger"],
     )
     movers = []
@@ -470,6 +485,8 @@ def spin_up(
     """
     scene = yade.Omega()
     engines = {sail.field: False, sail.rotation: True, sail.spool: True, sail.ledger: True}
+    if sail.hub:
+        engines[sail.hub] = True
     for engine, dead in engines.items():
         engine.dead = dead
     sail.field.omega = omega
@@ -521,4 +538,8 @@ def release(sail, omega, held):
         free = [axis not in state.blockedDOFs for axis in "xyz"]
         acceleration = free * (force / state.mass + gravity)
         state.vel = (np.array(state.vel) - 0.5 * scene.dt * acceleration).tolist()
-    sail.rotation.dead = sail.spool.dead = sail.ledger.dead = False
+    if sail.hub:
+        hub.release(sail.hub, omega, forces)
+    else:
+        sail.rotation.dead = False
+    sail.spool.dead = sail.ledger.dead = False

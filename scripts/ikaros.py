@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""IKAROS, the flight sail: the second stage of its deployment, on a hub that turns freely.
+
+From a cross of four folded arms, held at the body, to the flat square of 14 m. Nobody drives the
+hub: the spin follows from angular momentum. Run it by `scripts/run.sh ikaros [options]`.
+
+Known of the flight: size, film, masses, and the spin, 2.5 rpm with the arms out and 2.5 rpm after
+the second stage. Fold lines, tethers and damping are not known here: they are those of the paper's
+sail, scaled. The devices' mass is spread evenly over the film.
+
+The paper's fold lines are parallel to the outer edges, so that the tips of the folded cross lie as
+far out as half an edge is long, some 7 m. In flight the arms were out to about 10 m: a cross and a
+flat square of nearly the same moment of inertia. The scene's cross has less than half of that.
+It starts with the angular momentum of the flight, at more than twice its spin, and must
+end at the same 2.5 rpm; with `--spin 2.5` it has the flight's spin and ends at 1.1 rpm.
+"""
+
+import argparse
+import sys
+from dataclasses import replace
+from math import pi
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+from membrane import hub, plots, sail
+from membrane.parameters import SailParameters
+from membrane.record import Recorder
+
+RPM = 2 * pi / 60
+THICKNESS = 7.5e-6  # m, of the polyimide film
+AREAL_MASS = 0.081  # kg/m2, with solar cells and liquid-crystal devices
+HUB_INERTIA = 67.0  # kg m2, of the body, fitted to the spin from 25 to 2.5 rpm in stage 1
+FLIGHT_SPIN = 2.5  # rpm, with the arms out, and again after stage 2
+FLIGHT_CROSS = 779.0  # kg m2, of body and arms in flight, by the same fit
+STEP = 0.5  # of the critical time step
+SHOWN = (0.0, 1.0, 2.0, 4.0, 12.0)  # s, and the end
+OPTIONS = ("fold_lines", "refine", "duration", "zeta")
+
+IKAROS = SailParameters(
+    outer_width=14.0,
+    inner_width=3.2,
+    thickness=THICKNESS,
+    density=AREAL_MASS / THICKNESS,
+    spool_radius=0.79,
+    tip_mass=0.5,
+    hub_inertia=HUB_INERTIA,
+    crease_law="conservative",  # which gives and takes no angular momentum
+    gravity=0.0,
+    air_density=0.0,
+    bar_radius=0.93,
+    arm_radius=1.24,
+    layer_gap=3e-3,
+    tether_stiffness=2e3,
+    tether_density=5e-3,
+    tether_radius=5e-3,
+    spool_height=1.0,
+    history_interval=0.1,
+    shapes_interval=0.5,
+    duration=120.0,
+)
+
+
+def command_line():
+    """Parsed sys.argv."""
+    parser = argparse.ArgumentParser(
+        prog="ikaros", description="Stage 2 of the deployment of IKAROS, on a free hub."
+    )
+    parser.add_argument("--out", type=Path, default=Path("out_ikaros"), metavar="DIR")
+    parser.add_argument(
+        "--spin",
+        type=float,
+        metavar="RPM",
+        help="before stage 2 (default: that which gives the angular momentum of the flight)",
+    )
+    for name in OPTIONS:
+        value = getattr(IKAROS, name)
+        flag = "--" + name.replace("_", "-")
+        parser.add_argument(flag, type=type(value), default=value, metavar="N")
+    return parser.parse_args()
+
+
+def draw(mesh, recorder, history, rigid, path):
+    """Six shapes, and under them the spin of the hub and what momentum makes of it, `rigid`."""
+    times = np.array(recorder.frame_times)
+    figure = Figure(figsize=(10.5, 7.6))
+    for place, wanted in enumerate((*SHOWN, times[-1])):
+        i = int(np.argmin(np.abs(times - wanted)))
+        left, bottom = place % 3 / 3, 0.68 - 0.29 * (place // 3)
+        axes = figure.add_axes((left, bottom, 1 / 3, 0.3), projection="3d")
+        plots.draw_sail(axes, mesh, recorder.frames[i], 0.72 * mesh.outer_width)
+        figure.text(left + 1 / 6, bottom + 0.28, f"{times[i]:.0f} s", ha="center", fontsize=11)
+    axes = figure.add_axes((0.07, 0.075, 0.9, 0.3))
+    axes.plot(history["time"], history["hub_spin"] / RPM, label="hub")
+    axes.plot(history["time"], rigid, color="0.4", label="angular momentum / moment of inertia")
+    label = "IKAROS in flight, before and after stage 2"
+    axes.axhline(FLIGHT_SPIN, color="C3", linestyle="--", label=label)
+    axes.set(xlabel="time [s]", ylabel="spin [rpm]", xlim=(0, times[-1]), ylim=(0, None))
+    axes.grid(alpha=0.3)
+    axes.legend(frameon=False)
+    figure.savefig(path, dpi=plots.DPI)
+
+
+def report(p, history, rigid):
+    """What the run found, `rigid` [rpm] being the spin that momentum makes of the shape."""
+    momentum, late = history["angular_momentum"], history["time"] >= 0.75 * p.duration
+    hub = history["hub_energy"]
+
+    def mean(values):
+        return float(np.mean(values[late]))
+
+    return {
+        "parameters": p.as_dict(),
+        "spin_rpm": {
+            "before": float(history["hub_spin"][0] / RPM),
+            "after": mean(history["hub_spin"]) / RPM,
+            "after_by_momentum": mean(rigid),
+            "flight_before_and_after": FLIGHT_SPIN,
+        },
+        "inertia_before": float(history["inertia"][0]),
+        "inertia_after": mean(history["inertia"]),
+        "deployment_rate_after": mean(history["deployment_rate"]),
+        "angular_momentum": float(momentum[0]),
+        "angular_momentum_drift": float(np.abs(momentum / momentum[0] - 1).max()),
+        "kinetic_energy_before": float(history["kinetic_energy"][0]),
+        "kinetic_energy_after": mean(history["kinetic_energy"]),
+        "largest_change_of_hub_energy": float(np.abs(hub - hub[0]).max()),
+        "work_of_damping": float(history["damping_work"][-1]),
+        "work_of_contacts": float(history["contact_work"][-1]),
+        "largest_energy_imbalance": float(np.abs(history["energy_balance"]).max()),
+        "largest_unexplained_energy": float(
+            np.abs(history["energy_balance"] - history["kink_error"]).max()
+        ),
+    }
+
+
+def deploy(p, spin, folder):
+    """Do it all; returns what is written to summary.json. `spin` [rpm] or None: that of flight."""
+    mesh, built = sail.build(p)
+    critical = built.forces.criticalTimeStep()
+    p = replace(p, dt=STEP * critical, omega=(spin or FLIGHT_SPIN) * RPM)
+    sail.spin_up(built, p)
+    if spin is None:
+        cross = hub.inertia(built, built.positions())
+        p = replace(p, omega=p.omega * FLIGHT_CROSS / cross)
+    recorder = Recorder(folder, mesh, built, p.omega)
+    try:
+        sail.run(mesh, built, p, recorder)
+    finally:
+        recorder.close()
+    history = recorder.columns()
+    rigid = history["angular_momentum"] / history["inertia"] / RPM
+    summary = {"critical_time_step": critical, **report(p, history, rigid)}
+    sail.write_json(folder / "summary.json", summary)
+    draw(mesh, recorder, history, rigid, folder / "ikaros.png")
+    return summary
+
+
+def main():
+    """Deploy it and tell about the spin; sys.exit with one sentence if that cannot be."""
+    arguments = command_line()
+    given = {name: getattr(arguments, name) for name in OPTIONS}
+    try:
+        found = deploy(replace(IKAROS, **given), arguments.spin, arguments.out)
+    except (ValueError, RuntimeError, OSError) as error:
+        sys.exit(f"ikaros: {error}")
+    spin = found["spin_rpm"]
+    print(
+        f"Spin {spin['before']:.2f} rpm before, {spin['after']:.2f} rpm after, "
+        f"{spin['after_by_momentum']:.2f} rpm by momentum; in flight {FLIGHT_SPIN} rpm before and "
+        f"after. Inertia from {found['inertia_before']:.0f} to {found['inertia_after']:.0f} kg m2."
+    )
+    print("Look at:")
+    for name in ("ikaros.png", "history.csv", "summary.json", "shapes/film.pvd"):
+        print(f"  {arguments.out / name}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The further scenes as a user runs them: IKAROS on its free hub, the spinning disk."""
+
+import json
+import re
+import unittest
+
+from membrane.output import read_history
+from support import ROOT, run_yade, scratch
+
+
+class TestIkaros(unittest.TestCase):
+    SCRIPT = ROOT / "scripts" / "ikaros.py"
+
+    def test_hub_slows_as_the_sail_opens_and_momentum_is_kept(self):
+        folder = scratch() / "ikaros"
+        done = run_yade(
+            self.SCRIPT, "--out", folder, "--duration", "6", "--fold-lines", "4", "--spin", "5"
+        )
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = json.loads((folder / "summary.json").read_text())
+        history = read_history(folder / "history.csv")
+        self.assertAlmostEqual(found["spin_rpm"]["before"], 5, delta=1e-3)
+        self.assertLess(history["hub_spin"][-1], 0.9 * history["hub_spin"][0])
+        self.assertGreater(history["inertia"][-1], 1.5 * history["inertia"][0])
+        self.assertLess(found["angular_momentum_drift"], 1e-12)
+        energy = found["kinetic_energy_before"]
+        self.assertGreater(found["largest_change_of_hub_energy"], 1e-2 * energy)
+        self.assertLess(found["largest_unexplained_energy"], 1e-4 * energy)
+        self.assertGreater((folder / "ikaros.png").stat().st_size, 50_000)
+
+    def test_bad_value_ends_with_one_sentence(self):
+        done = run_yade(self.SCRIPT, "--out", scratch() / "refused", "--zeta=-1")
+        self.assertNotIn(done.returncode, (0, None))
+        self.assertIn("ikaros: zeta = -1.0 must be >= 0", done.stderr)
+        self.assertNotIn("Traceback", done.stdout + done.stderr)
+
+
+class TestGuide(unittest.TestCase):
+    def test_its_own_mesh_opens_and_keeps_its_energy(self):
+        text = (ROOT / "reference" / "guide.md").read_text()
+        script = scratch() / "sheet.py"
+        script.write_text(text.split("```python\n")[1].split("```")[0])
+        done = run_yade(script, folder=scratch())
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = re.search(r"opened to (\d+) degrees; energy from nowhere (\S+) J", done.stdout)
+        self.assertGreater(int(said[1]), 120)  # from 60
+        self.assertLess(abs(float(said[2])), 1e-3)  # of some 0.03 J
+        self.assertEqual(len(list((scratch() / "sheet").glob("*.vtu"))), 40)
+
+
+class TestDisk(unittest.TestCase):
+    def test_errors_fall_with_the_square_of_the_cells(self):
+        done = run_yade(ROOT / "scripts" / "disk.py", folder=scratch())
+        self.assertEqual(done.returncode, 0, done.stderr)
+        lines = re.findall(r"error ([0-9.]+) % on 16 cells, order ([0-9.]+)", done.stdout)
+        self.assertEqual(len(lines), 3, done.stdout)
+        for error, order in lines:
+            self.assertLess(float(error), 0.5)
+            self.assertAlmostEqual(float(order), 2, delta=0.15)
+        self.assertGreater((scratch() / "disk.png").stat().st_size, 50_000)
+
+
+if __name__ == "__main__":
+    unittest.main()
