@@ -42,6 +42,7 @@ class VtkSeries:
         if cells.ndim != 2 or cells.shape[1] not in CELL_TYPES:
             raise ValueError(f"cells of shape {cells.shape}: must be (M, 2) or (M, 3)")
         self.folder, self.name, self.cells = Path(folder), name, cells
+        self._cell_array = cell_array(cells)
         self.frames = []
         self.folder.mkdir(parents=True, exist_ok=True)
         for earlier in self.folder.glob(f"{name}_*.vtu"):
@@ -66,7 +67,11 @@ class VtkSeries:
         """
         if self.frames and time <= self.frames[-1][0]:
             raise ValueError(f"time = {time} s: must be > {self.frames[-1][0]} s, the last frame's")
-        grid = _grid(self.cells, _finite("positions", positions))
+        points = vtkPoints()
+        points.SetData(numpy_to_vtk(_finite("positions", positions), deep=True))
+        grid = vtkUnstructuredGrid()
+        grid.SetPoints(points)
+        grid.SetCells(CELL_TYPES[self.cells.shape[1]], self._cell_array)
         for label, values in (cell_data or {}).items():
             if np.shape(values) != (len(self.cells),):
                 raise ValueError(
@@ -180,21 +185,15 @@ def read_history(path):
     return {name: table[:, i] for i, name in enumerate(names)}
 
 
-def _grid(cells, positions):
-    """The cells as a vtkUnstructuredGrid."""
-    points = vtkPoints()
-    points.SetData(numpy_to_vtk(positions, deep=True))
-    size = cells.shape[1]
-    offsets = np.arange(0, cells.size + 1, size, dtype=np.int64)
+def cell_array(cells):
+    """Rows of node ids (M, n) as a vtkCellArray."""
+    offsets = np.arange(0, cells.size + 1, cells.shape[1], dtype=np.int64)
     array = vtkCellArray()
     array.SetData(
         numpy_to_vtkIdTypeArray(offsets, deep=True),
         numpy_to_vtkIdTypeArray(cells.astype(np.int64).ravel(), deep=True),
     )
-    grid = vtkUnstructuredGrid()
-    grid.SetPoints(points)
-    grid.SetCells(CELL_TYPES[size], array)
-    return grid
+    return array
 
 
 def _write_grid(grid, path):
