@@ -16,9 +16,9 @@ from pathlib import Path
 import numpy as np
 import vtkmodules.vtkRenderingFreeType  # noqa: F401, text
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401, makes windows that draw
-from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints, vtkUnsignedCharArray
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkCommonTransforms import vtkTransform
 from vtkmodules.vtkFiltersSources import vtkCubeSource, vtkCylinderSource, vtkSphereSource
 from vtkmodules.vtkRenderingCore import (
@@ -34,7 +34,7 @@ from vtkmodules.vtkRenderingCore import (
 )
 
 from .mesh import mesh_of
-from .output import list_series, read_frame
+from .output import cell_array, list_series, read_frame
 from .parameters import SailParameters
 from .plots import FILM, SPOOL, VIEW
 
@@ -187,7 +187,7 @@ class Stage:
     def _add_film(self):
         film = vtkPolyData()
         film.SetPoints(self.points)
-        film.SetPolys(_cells(self.mesh.triangles))
+        film.SetPolys(cell_array(self.mesh.triangles))
         actor = self._surface(film, FILM)
         # Lines on the film lie in front of it.
         actor.GetMapper().SetResolveCoincidentTopologyToPolygonOffset()
@@ -204,7 +204,7 @@ class Stage:
     def _add_lines(self, pairs, colour, width):
         lines = vtkPolyData()
         lines.SetPoints(self.points)
-        lines.SetLines(_cells(pairs))
+        lines.SetLines(cell_array(pairs))
         look = self._surface(lines, colour).GetProperty()
         look.SetLineWidth(width)
         look.LightingOff()
@@ -276,7 +276,7 @@ class Stage:
             points.InsertNextPoint(left + x, low + y, 0)
         bar = vtkPolyData()
         bar.SetPoints(points)
-        bar.SetLines(_cells(np.array([[0, 1], [1, 2], [2, 3]])))
+        bar.SetLines(cell_array(np.array([[0, 1], [1, 2], [2, 3]])))
         mapper = vtkPolyDataMapper2D()
         mapper.SetInputData(bar)
         actor = vtkActor2D()
@@ -304,17 +304,6 @@ class Stage:
         times = [time for time, _ in self.shapes]
         share = RATE * (times[-1] - times[0]) / max(1, len(times) - 1)
         return f"slowed down {1 / share:.3g} times" if 0 < share < 0.99 else ""
-
-
-def _cells(ids):
-    """Rows of node ids (M, n) as VTK cells."""
-    offsets = np.arange(0, ids.size + 1, ids.shape[1], dtype=np.int64)
-    cells = vtkCellArray()
-    cells.SetData(
-        numpy_to_vtkIdTypeArray(offsets, deep=True),
-        numpy_to_vtkIdTypeArray(ids.astype(np.int64).ravel(), deep=True),
-    )
-    return cells
 
 
 def _encode(path, pictures):

@@ -52,6 +52,7 @@ class VtkSeries:
             raise ValueError(f"cells of shape {cells.shape}: must be (M, 2) or (M, 3)")
         self.folder, self.name, self.cells = Path(folder), name, cells
         self.frames = [(time, self._file(i)) for i, time in enumerate(times)]
+        self._cell_array = cell_array(cells)
         self.folder.mkdir(parents=True, exist_ok=True)
         kept = {file for _, file in self.frames}
         for earlier in self.folder.glob(f"{name}_*.vtu"):
@@ -79,7 +80,11 @@ class VtkSeries:
         """
         if self.frames and time <= self.frames[-1][0]:
             raise ValueError(f"time = {time} s: must be > {self.frames[-1][0]} s, the last frame's")
-        grid = _grid(self.cells, _finite("positions", positions))
+        points = vtkPoints()
+        points.SetData(numpy_to_vtk(_finite("positions", positions), deep=True))
+        grid = vtkUnstructuredGrid()
+        grid.SetPoints(points)
+        grid.SetCells(CELL_TYPES[self.cells.shape[1]], self._cell_array)
         for label, values in (cell_data or {}).items():
             if np.shape(values) != (len(self.cells),):
                 raise ValueError(
@@ -246,21 +251,15 @@ def _is_value(text):
         return False
 
 
-def _grid(cells, positions):
-    """The cells as a vtkUnstructuredGrid."""
-    points = vtkPoints()
-    points.SetData(numpy_to_vtk(positions, deep=True))
-    size = cells.shape[1]
-    offsets = np.arange(0, cells.size + 1, size, dtype=np.int64)
+def cell_array(cells):
+    """Rows of node ids (M, n) as a vtkCellArray."""
+    offsets = np.arange(0, cells.size + 1, cells.shape[1], dtype=np.int64)
     array = vtkCellArray()
     array.SetData(
         numpy_to_vtkIdTypeArray(offsets, deep=True),
         numpy_to_vtkIdTypeArray(cells.astype(np.int64).ravel(), deep=True),
     )
-    grid = vtkUnstructuredGrid()
-    grid.SetPoints(points)
-    grid.SetCells(CELL_TYPES[size], array)
-    return grid
+    return array
 
 
 def _write_grid(grid, path):
