@@ -6,7 +6,7 @@ import re
 import unittest
 
 from membrane.output import read_history
-from support import ROOT, run_yade, scratch
+from support import ROOT, long, run_yade, scratch
 
 
 class TestIkaros(unittest.TestCase):
@@ -50,6 +50,7 @@ class TestGuide(unittest.TestCase):
 
 
 class TestDisk(unittest.TestCase):
+    @long
     def test_errors_fall_with_the_square_of_the_cells(self):
         done = run_yade(ROOT / "scripts" / "disk.py", folder=scratch())
         self.assertEqual(done.returncode, 0, done.stderr)

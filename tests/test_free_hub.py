@@ -109,14 +109,15 @@ class TestClosedForms(SceneTest):
         own = made.hub.totalInertia
         c = own / (2 * TIP) / radius**2 + 1
         found, expected = [], []
-        for _ in range(20):
-            scene.advance(10_000)
+        for _ in range(12):
+            scene.advance(round(0.13 / 12 / O.dt))
             unwound2 = np.mean(np.sum(made.positions()[tips, :2] ** 2, axis=1)) - radius**2
             found.append(made.hub.spin / OMEGA)
             expected.append((c * radius**2 - unwound2) / (c * radius**2 + unwound2))
         self.assertGreater(max(expected), 0.8)
         self.assertLess(min(expected), 0.2)
-        np.testing.assert_allclose(found, expected, atol=0.04)
+        # 0.02 found, for the hub is a polygon and the tether a chain; 0.04 on twice as coarse ones.
+        np.testing.assert_allclose(found, expected, atol=0.03)
         ledger = made.ledger
         kept = ledger.angularMomentum / ledger.initialAngularMomentum
         self.assertAlmostEqual(kept, 1, delta=1e-12)
@@ -125,7 +126,7 @@ class TestClosedForms(SceneTest):
 def yoyo():
     """Two masses on tethers wound around a free hub by a third of a turn, without friction."""
     O.reset()
-    radius, piece, count = 0.025 + 5e-4, 4e-3, 14
+    radius, piece, count = 0.025 + 5e-4, 2e-3, 28
     arc = np.arange(count + 1)[::-1] * piece / radius  # the tip, at 0, trails the anchor
     chain = radius * np.column_stack([np.cos(arc), np.sin(arc), np.zeros(count + 1)])
     nodes = np.concatenate([chain, chain * [-1, -1, 1]])
@@ -143,7 +144,7 @@ def yoyo():
     )
     ids = np.array(tethers.bodyIds)
     anchors = [0, count + 1]
-    facets = spool.add_spool(young=1e5, friction_angle=0)
+    facets = spool.add_spool(facets=72, young=1e5, friction_angle=0)
     made = scene.set_engines(
         tethers,
         path="fused",
@@ -154,7 +155,7 @@ def yoyo():
         zeta=0.3,
     )
     made.hold(anchors)
-    O.dt = 0.3 * made.forces.criticalTimeStep()
+    O.dt = 0.8 * made.forces.criticalTimeStep()
     scene.set_spin(made, OMEGA)
     return made, radius, tips
 
@@ -240,6 +241,21 @@ class TestLimits(SceneTest):
         heavy = star(inertia=1e3).forces.criticalTimeStep()
         light = star(inertia=1e-9).forces.criticalTimeStep()
         self.assertLess(light, 0.5 * heavy)
+
+
+class TestWatch(SceneTest):
+    def test_last_good_state_has_the_hub_of_its_time(self):
+        made = star(stiffness=3.0)
+        scene.advance(350)
+        late = made.hub.angle
+        steps = round(made.watch.restore() / O.dt)
+        self.assertLess(steps, 350)
+        again = made.hub.spin, made.hub.angle, made.positions()
+        self.assertLess(again[1], late)
+        made = star(stiffness=3.0)
+        scene.advance(steps)
+        self.assertEqual(again[:2], (made.hub.spin, made.hub.angle))
+        np.testing.assert_array_equal(again[2], made.positions())
 
 
 class TestBadUse(SceneTest):
