@@ -24,6 +24,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 from membrane import hub, plots, sail
+from membrane.files import write_json
 from membrane.parameters import SailParameters
 from membrane.record import Recorder
 
@@ -145,13 +146,14 @@ def deploy(p, spin, folder):
         p = replace(p, omega=p.omega * FLIGHT_CROSS / cross)
     recorder = Recorder(folder, mesh, built, p.omega)
     try:
-        sail.run(mesh, built, p, recorder)
+        sail.release(mesh, built, p)
+        sail.march(p, recorder, lambda row: f"hub {row['hub_spin'] / RPM:.2f} rpm")
     finally:
         recorder.close()
     history = recorder.columns()
     rigid = history["angular_momentum"] / history["inertia"] / RPM
     summary = {"critical_time_step": critical, **report(p, history, rigid)}
-    sail.write_json(folder / "summary.json", summary)
+    write_json(folder / "summary.json", summary)
     draw(mesh, recorder, history, rigid, folder / "ikaros.png")
     return summary
 

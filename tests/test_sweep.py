@@ -111,7 +111,7 @@ class Killing:
         wanted = saved(self.folder) + self.random.randint(1, most)
         while process.poll() is None and saved(self.folder) < wanted:
             time.sleep(0.01)
-        time.sleep(self.random.uniform(0, 0.2))
+        time.sleep(self.random.uniform(0, 0.05))
         if process.poll() is not None:
             process.communicate()
             return False
@@ -225,7 +225,7 @@ class TestSweep(SweepTest):
     def test_sweep_killed_at_random_moments_leaves_the_same_files(self):
         folder = scratch() / "killed_sweep"
         killing = Killing(3, folder, lambda: start_sweep(folder, *self.OPTIONS))
-        kills = sum(killing.kill_after(25) for _ in range(2))
+        kills = sum(killing.kill_after(8) for _ in range(2))
         self.assertEqual(kills, 2)
         status, said = killing.finish()
         self.assertEqual(status, 0, said)
