@@ -33,7 +33,7 @@ END
 run_packages=(yade python3-numpy python3-matplotlib python3-vtk9
     g++ cmake make libboost-dev libeigen3-dev python3-dev libgtest-dev)
 verify_packages=(calculix-ccx python3-scipy)
-bench_packages=(lammps openmpi-bin)
+bench_packages=(lammps openmpi-bin valgrind)
 format_packages=(clang-format black python3-flake8 shellcheck)
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
@@ -146,7 +146,7 @@ run_tests() {
 }
 
 # List the sources of a language; build/ and hidden folders are not searched.
-cpp_sources() { find "$root/pkg" "$root/tests" -name '*.[ch]pp'; }
+cpp_sources() { find "$root/pkg" "$root/scripts" "$root/tests" -name '*.[ch]pp'; }
 python_sources() { find "$root/scripts" "$root/tests" "$root/reference" -name '*.py'; }
 
 format() {
