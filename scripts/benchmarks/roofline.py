@@ -8,8 +8,10 @@ line that had to come from further away, not a wait.
 """
 
 import json
+import math
 import re
 import shutil
+import statistics
 import subprocess
 import tempfile
 from collections import Counter
@@ -17,6 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator
 from membrane.plots import DPI
 
 from . import cases, results
@@ -408,36 +411,49 @@ def plot(found, points, known, path):
     """
     value = {one.name: one.value for one in found if one.nodes is None}
     peak, fused = (value[name] for name in value if name.startswith("peak"))
-    rates = {point: 1e-9 * sorted(point.rates)[len(point.rates) // 2] for point in points}
-    least = 0.5 * min(point.intensity for point in points)
-    most = 8 * max(point.intensity for point in points)
+    rates = {point: 1e-9 * statistics.median(point.rates) for point in points}
+    bandwidths = {level.name: value[bandwidth_name(level)] for level in known}
+    least = 0.7 * min(peak / max(bandwidths.values()), *(point.intensity for point in points))
+    most = 6 * max(point.intensity for point in points)
+    lowest = 0.5 * min(rates.values())
     figure = Figure(figsize=(7.5, 5.2), layout="constrained")
     axes = figure.subplots()
-    for number, level in enumerate(known):
-        bandwidth = value[bandwidth_name(level)]
-        corner = min(peak / bandwidth, most)
-        grey = str(0.15 + 0.5 * number / len(known))
-        label = f"{level.name}, {bandwidth:.0f} GB/s"
-        if corner > least:
-            ends = [least, corner]
-            axes.plot(ends, [bandwidth * end for end in ends], color=grey, label=label)
-    axes.plot([least, most], [peak, peak], "k-", linewidth=2)
-    axes.annotate(
+    axes.set(xscale="log", yscale="log", xlim=(least, most), ylim=(lowest, 1.6 * peak))
+    for name, bandwidth in bandwidths.items():
+        corner = peak / bandwidth
+        axes.plot([lowest / bandwidth, corner], [lowest, peak], color="0.4")
+        start = 1.08 * max(least, lowest / bandwidth)
+        below = name == "L3"  # it is close to L2
+        axes.text(
+            start,
+            (0.96 if below else 1.06) * bandwidth * start,
+            f"{name}, {bandwidth:.0f} GB/s",
+            rotation=math.degrees(math.atan(bandwidth)),
+            rotation_mode="anchor",
+            transform_rotates_text=True,
+            va="top" if below else "bottom",
+            fontsize=9,
+        )
+    axes.plot([peak / max(bandwidths.values()), most], [peak, peak], color="0.4")
+    axes.text(
+        0.95 * most,
+        1.05 * peak,
         f"sums and products, {peak:.0f} Gflop/s (fused: {fused:.0f})",
-        (most, peak),
-        (-4, 4),
-        textcoords="offset points",
         ha="right",
+        fontsize=9,
     )
     sizes = sorted({point.sheet["nodes"] for point in points})
     for point, rate in rates.items():
-        marker = "osD^v"[sizes.index(point.sheet["nodes"]) % 5]
+        marker = "osD^"[sizes.index(point.sheet["nodes"]) % 4]
         colour = "C1" if point.everything else "C0"
         label = f"{NAMES[point.everything]}, {point.sheet['nodes']:,} nodes"
         axes.plot(point.intensity, rate, marker, color=colour, label=label, linestyle="none")
-    axes.set(xscale="log", yscale="log", xlim=(least, most))
-    axes.set(ylim=(0.5 * min(rates.values()), 1.6 * peak))
-    axes.set(xlabel="operations a byte of the least traffic [flop/byte]", ylabel="[Gflop/s]")
-    axes.grid(alpha=0.3, which="both")
-    axes.legend(frameon=False, fontsize=8, loc="lower right")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter("")
+    axes.set(xlabel="operations a byte of the least traffic [flop/byte]")
+    axes.set(ylabel="operations a second [Gflop/s]")
+    axes.grid(alpha=0.3)
+    axes.legend(frameon=False, fontsize=9, loc="lower right")
     figure.savefig(path, dpi=DPI)
