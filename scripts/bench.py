@@ -28,6 +28,7 @@ MODULES = {
     "sizes": "time, memory and building a node, from a thousand nodes to a million",
     "deployment": "the paper's sail, fold to fullest",
     "threads": "two threads beside one, and beside LAMMPS on two",
+    "roofline": "kernels beside the limits of one core; instructions and cache misses",
 }
 RESULTS = SCRIPTS.parent / "reference" / "bench.json"
 

@@ -49,7 +49,7 @@ run_packages=(yade python3-numpy python3-matplotlib python3-vtk9
 sail_packages=(python3-gmsh python3-meshio)
 test_packages=(xvfb xauth) # a display for the tests of drawing
 verify_packages=(calculix-ccx python3-scipy)
-bench_packages=(lammps openmpi-bin)
+bench_packages=(lammps openmpi-bin valgrind)
 animation_packages=(xvfb libgl1-mesa-dri ffmpeg)
 browser_packages=(chromium chromium-driver python3-selenium)
 sweep_packages=(python3-jinja2)
@@ -194,7 +194,7 @@ run_tests() {
 }
 
 # List the sources of a language; build/ and hidden folders are not searched.
-cpp_sources() { find "$root/pkg" "$root/tests" -name '*.[ch]pp'; }
+cpp_sources() { find "$root/pkg" "$root/scripts" "$root/tests" -name '*.[ch]pp'; }
 python_sources() { find "$root/scripts" "$root/tests" "$root/reference" -name '*.py'; }
 
 format() {

@@ -18,6 +18,10 @@ MEANING = {
     "springs": "springs, buckling and damping; in LAMMPS springs alone",
     "all forces": "springs, buckling, damping, creases on every fourth row of sides, air drag",
     "exchange": "steps between two updates of YADE's bodies, path fused",
+    "roofline": "the kernels by themselves, without YADE; operations: as counted in the sources, "
+    "atan2 as one; least traffic: what a step must read or write once; attainable: the least of "
+    "peak and intensity times bandwidth of the level that holds all; simulated: by valgrind, "
+    "without prefetching",
     "other_work": "cores that were busy with something else meanwhile, mean",
 }
 MADE_FROM = ("pkg", "scripts", "CMakeLists.txt")  # what decides on the speed
