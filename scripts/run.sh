@@ -24,6 +24,11 @@ usage: scripts/run.sh COMMAND [options]
                             options by `scripts/run.sh sweep --help`
   case --out DIR [options]  one deployment that leaves all its results or none and, run again
                             after it was stopped, goes on; options by `scripts/run.sh case --help`
+  workflow [options]        the same sweep as a Snakemake workflow, one job a case, here or on Slurm;
+                            options of snakemake, as -j N or --profile scripts/workflow/slurm
+  calibrate TARGET [options]
+                            find the alpha_crease and beta whose run follows a measured curve;
+                            options of scripts/calibrate.py
   build                     compile the plugin into build/python
   format [--check]          format C++ and Python sources; --check changes nothing and fails where
                             a file is not formatted or a linter complains
@@ -40,6 +45,9 @@ run_packages=(yade python3-numpy python3-matplotlib python3-vtk9
 verify_packages=(calculix-ccx python3-scipy)
 bench_packages=(lammps openmpi-bin)
 sweep_packages=(python3-jinja2)
+workflow_packages=(snakemake)
+calibrate_packages=(python3-scipy)
+slurm_packages=(slurmctld slurmd slurm-client munge) # for a test
 format_packages=(clang-format black python3-flake8 shellcheck)
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
@@ -162,7 +170,8 @@ python_sources() { find "$root/scripts" "$root/tests" "$root/reference" -name '*
 
 format() {
     need "${format_packages[@]}"
-    local -a cpp python shell=("$root/scripts/run.sh" "$root/.ci/run") black=(black -q -l 100)
+    local -a cpp python shell=("$root/scripts/run.sh" "$root/scripts/workflow/slurm/status.sh" "$root/.ci/run")
+    local -a black=(black -q -l 100)
     mapfile -t cpp < <(cpp_sources)
     mapfile -t python < <(python_sources)
     case ${1-} in
@@ -192,6 +201,8 @@ deploy)
     run_yade "$root/scripts/deploy.py" "$@"
     ;;
 test)
+    need "${sweep_packages[@]}" "${workflow_packages[@]}" "${calibrate_packages[@]}"
+    [[ " $* " != *" --full "* ]] || need "${slurm_packages[@]}"
     compile
     run_tests "$@"
     ;;
@@ -214,6 +225,19 @@ sweep)
 case | stability | parts | chart)
     compile
     run_yade "$root/scripts/$command.py" "$@"
+    ;;
+workflow)
+    need "${sweep_packages[@]}" "${workflow_packages[@]}"
+    compile
+    set_environment
+    (($#)) || set -- --cores all
+    exec snakemake --snakefile "$root/scripts/workflow/Snakefile" --rerun-incomplete "$@"
+    ;;
+calibrate)
+    need "${calibrate_packages[@]}"
+    compile
+    set_environment
+    exec python3 "$root/scripts/calibrate.py" "$@"
     ;;
 build) compile ;;
 format) format "$@" ;;
