@@ -178,6 +178,17 @@ class TestSlurm(unittest.TestCase):
         submitted = re.findall(r"Submitted job \d+ with external jobid", self.second.stdout)
         self.assertEqual(len(submitted), 1, self.second.stdout)
 
+    def test_a_finished_case_that_was_removed_is_planned_again(self):
+        case = self.folder / "results" / "cases" / self.victim
+        away = case.rename(self.folder / "away")
+        try:
+            done = snakemake(self.folder, "--configfile", "tiny.yaml", "--dry-run", "--jobs", "1")
+        finally:
+            away.rename(case)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        planned = re.findall("wildcards: case=(.*)", done.stdout)
+        self.assertEqual(planned, [self.victim], done.stdout)
+
     def test_the_report_knows_all_cases(self):
         results = self.folder / "results"
         page, table = (results / name for name in ("report.html", "cases.csv"))
