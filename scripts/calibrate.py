@@ -193,7 +193,10 @@ def main():
         sys.exit(f"calibrate: {error}")
     for name, about in content["parameters"].items():
         share = 100 * about["sigma_of_logarithm"]
-        print(f"{name} = {about['value']:.4g} +- {about['sigma']:.2g} ({share:.1f} %)")
+        if about["identifiable"]:
+            print(f"{name} = {about['value']:.4g} +- {about['sigma']:.2g} ({share:.1f} %)")
+        else:
+            print(f"{name} is not identifiable; the fit has {about['value']:.4g}")
     if len(names) == 2:
         print(f"correlation {found.correlation:+.2f}")
     for name, about in content["curves"].items():

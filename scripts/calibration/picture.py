@@ -78,8 +78,9 @@ def _draw_parameters(axes, found, names, runs, region):
     low = np.exp(np.minimum(region.low - room, found.point - reach))
     high = np.exp(np.maximum(region.high + room, found.point + reach))
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(LogLocator(subs=(1, 2, 3, 5, 7)))
+    for axis, decades in zip((axes.xaxis, axes.yaxis), np.log10(high / low)):
+        ticks = (1, 2, 3, 5, 7) if decades < 1 else (1, 3) if decades < 2 else (1,)
+        axis.set_major_locator(LogLocator(subs=ticks))
         axis.set_minor_locator(NullLocator())
         axis.set_major_formatter("{x:g}")
     axes.set(xlabel=LABELS[names[0]], ylabel=LABELS[names[1]])
