@@ -33,6 +33,11 @@ usage: scripts/run.sh COMMAND [options]
                             after it was stopped, goes on; options by `scripts/run.sh case --help`
   ikaros [options]          stage 2 of the flight sail on a free hub; options of scripts/ikaros.py
   disk                      accuracy: a spinning disk against its closed form
+  workflow [options]        the same sweep as a Snakemake workflow, one job a case, here or on Slurm;
+                            options of snakemake, as -j N or --profile scripts/workflow/slurm
+  calibrate TARGET [options]
+                            find the alpha_crease and beta whose run follows a measured curve;
+                            options of scripts/calibrate.py
   build                     compile the plugin into build/python
   format [--check]          format C++ and Python sources; --check changes nothing and fails where
                             a file is not formatted or a linter complains
@@ -53,6 +58,9 @@ bench_packages=(lammps openmpi-bin valgrind)
 animation_packages=(xvfb libgl1-mesa-dri ffmpeg)
 browser_packages=(chromium chromium-driver python3-selenium)
 sweep_packages=(python3-jinja2)
+workflow_packages=(snakemake)
+calibrate_packages=(python3-scipy)
+slurm_packages=(slurmctld slurmd slurm-client munge) # for a test
 format_packages=(clang-format black python3-flake8 shellcheck)
 
 no_display=(-n) # how YADE is told to do without
@@ -199,7 +207,8 @@ python_sources() { find "$root/scripts" "$root/tests" "$root/reference" -name '*
 
 format() {
     need "${format_packages[@]}"
-    local -a cpp python shell=("$root/scripts/run.sh" "$root/.ci/run") black=(black -q -l 100)
+    local -a cpp python shell=("$root/scripts/run.sh" "$root/scripts/workflow/slurm/status.sh" "$root/.ci/run")
+    local -a black=(black -q -l 100)
     mapfile -t cpp < <(cpp_sources)
     mapfile -t python < <(python_sources)
     case ${1-} in
@@ -242,7 +251,8 @@ watch)
     run_yade "$root/scripts/deploy.py" --watch "$@"
     ;;
 test)
-    need "${sail_packages[@]}" "${sweep_packages[@]}" "${test_packages[@]}"
+    need "${sail_packages[@]}" "${sweep_packages[@]}" "${workflow_packages[@]}" "${calibrate_packages[@]}" "${test_packages[@]}"
+    [[ " $* " != *" --full "* ]] || need "${slurm_packages[@]}"
     compile
     viewer_if_possible
     (need "${animation_packages[@]}" "${browser_packages[@]}") || true # tests say what they lack
@@ -285,6 +295,19 @@ animate)
 ikaros | disk)
     compile
     run_yade "$root/scripts/$command.py" "$@"
+    ;;
+workflow)
+    need "${sweep_packages[@]}" "${workflow_packages[@]}"
+    compile
+    set_environment
+    (($#)) || set -- --cores all
+    exec snakemake --snakefile "$root/scripts/workflow/Snakefile" --rerun-incomplete "$@"
+    ;;
+calibrate)
+    need "${calibrate_packages[@]}"
+    compile
+    set_environment
+    exec python3 "$root/scripts/calibrate.py" "$@"
     ;;
 build) compile ;;
 format) format "$@" ;;

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Curves of deployments for given parameters: each run a YADE of its own, several at once."""
+
+import os
+import subprocess
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+DEPLOY = Path(__file__).resolve().parents[1] / "deploy.py"
+INTERVAL = 1e-3  # [s] between rows of a run's history
+LAST_GOOD = "last_good.yade.gz"  # left by a run that went wrong
+
+
+class Deployments:
+    """Runs scripts/deploy.py for points in parameter space; no point twice.
+
+    Parameters
+    ----------
+    names : sequence of str
+        The d parameters that vary.
+    target : Target
+        Gives columns and times.
+    options : sequence of str
+        Further options of scripts/deploy.py, the same for all runs.
+    tell : callable
+        Called with (values of the parameters (d,), curves or None) after each run.
+    """
+
+    def __init__(self, names, target, options=(), tell=lambda values, curves: None):
+        self.names, self.target, self.options, self.tell = names, target, list(options), tell
+        self.workers = len(os.sched_getaffinity(0))
+        self._known = {}
+
+    def __call__(self, points):
+        """Curves of points (n, d), logarithms: a list of (C, S), None where the run diverged."""
+        points = [tuple(float(v) for v in point) for point in points]
+        new = [point for point in dict.fromkeys(points) if point not in self._known]
+        with ThreadPoolExecutor(self.workers) as pool:
+            try:
+                self._known.update(zip(new, pool.map(self._run, new)))
+            except BaseException:
+                pool.shutdown(cancel_futures=True)  # what the first refuses, the others would
+                raise
+        return [self._known[point] for point in points]
+
+    @property
+    def points(self):
+        """Logarithms of the parameters of the runs that went well, (n, d)."""
+        return np.array([p for p, curves in self._known.items() if curves is not None])
+
+    @property
+    def curves(self):
+        """Their curves, (n, C, S)."""
+        return np.array([curves for curves in self._known.values() if curves is not None])
+
+    def __len__(self):
+        return len(self._known)
+
+    def _run(self, point):
+        values = np.exp(point)
+        with tempfile.TemporaryDirectory(prefix="calibration-") as folder:
+            done = subprocess.run(
+                ["yade", "-n", "-x", "-j1", str(DEPLOY), *self.options, *self._own(values, folder)],
+                capture_output=True,
+                text=True,
+            )
+            diverged = (Path(folder) / LAST_GOOD).exists()
+            if done.returncode and not diverged:
+                said = [line for line in done.stderr.splitlines() if line.startswith("deploy:")]
+                raise RuntimeError(said[-1] if said else done.stderr.strip())
+            curves = None if diverged else self._read(Path(folder) / "history.csv")
+        self.tell(values, curves)
+        return curves
+
+    def _own(self, values, folder):
+        """Options that are not the caller's to choose."""
+        flags = [f"--{name.replace('_', '-')}" for name in self.names]
+        given = [f"{flag}={value!r}" for flag, value in zip(flags, values.tolist())]
+        duration = INTERVAL * (np.ceil(self.target.times[-1] / INTERVAL) + 1)
+        return [
+            *given,
+            f"--duration={duration}",
+            f"--history-interval={INTERVAL}",
+            "--shapes-interval=0",
+            "--no-pictures",
+            f"--out={folder}",
+        ]
+
+    def _read(self, path):
+        """Curves (C, S) of a history.csv at the target's times."""
+        table = np.genfromtxt(path, delimiter=",", names=True)
+        rows = np.array([table[name] for name in self.target.columns])
+        return CubicSpline(table["time"], rows, axis=1)(self.target.times)

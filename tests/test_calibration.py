@@ -1,0 +1,281 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Calibration: known parameters are found again, and lie within the uncertainty that is told."""
+
+import importlib
+import json
+import subprocess
+import sys
+import unittest
+
+import numpy as np
+from support import ROOT, long, run_yade, scratch, yade_environment
+
+sys.path.append(str(ROOT / "scripts"))
+target, search, surface = (
+    importlib.import_module(f"calibration.{name}") for name in ("target", "search", "surface")
+)
+TIMES = np.linspace(0.0, 0.1, 101)  # [s]
+LOW, HIGH = np.log([10.0, 1.0]), np.log([1000.0, 100.0])
+NOISE = {"phase_difference": np.radians(0.1), "deployment_rate": 0.005}
+
+
+class Sail:
+    """Curves in closed form, with the valley and the saturation of the sail's, and scatter.
+
+    Parameters
+    ----------
+    scatter : float
+        Standard deviation by which whole runs are off; it grows with time and is not white.
+    rng : numpy.random.Generator
+    """
+
+    def __init__(self, scatter, rng):
+        self.scatter, self.rng = scatter, rng
+        self.points, self.curves = np.empty((0, 2)), np.empty((0, 2, len(TIMES)))
+
+    def exact(self, point):
+        """Curves (2, S) at a point (2,), logarithms, without scatter."""
+        alpha, beta = np.exp(point)
+        s = TIMES / TIMES[-1]
+        late, stiff = 1 / (1 + 100 / alpha), beta / 40
+        phase = -0.5 * s**2.5 * (1 - 0.3 * s * np.log1p(stiff) - 0.06 * late * np.sin(2.5 * s))
+        rate = 0.08 + 0.8 * s**3 * (1 - 0.15 * late * s - 0.2 * s * np.log1p(stiff))
+        return np.array([phase, rate])
+
+    def run(self, point):
+        """Curves (2, S) with the scatter of a run."""
+        s = TIMES / TIMES[-1]
+        off = self.rng.standard_normal((2, 2)) @ [s**4, s**4 * np.cos(6 * s)]
+        return self.exact(point) + self.scatter * off
+
+    def __call__(self, points):
+        found = [self.run(point) for point in points]
+        self.points = np.concatenate([self.points, points])
+        self.curves = np.concatenate([self.curves, found])
+        return found
+
+    def target(self, point, noise):
+        """Target from a run at a point, with white noise of standard deviation `noise`."""
+        values = self.run(point)
+        values = values + noise * self.rng.standard_normal(values.shape)
+        names = ("phase_difference", "deployment_rate")
+        return target.Target(TIMES, names, values, target.noise_of(values))
+
+
+class TestTarget(unittest.TestCase):
+    def write(self, text):
+        path = scratch() / "target.csv"
+        path.write_text(text)
+        return path
+
+    def rows(self, count=20, **changes):
+        lines = [f"{1e-3 * i},{changes.get(f'row_{i}', i)},0" for i in range(count)]
+        return "\n".join(["time,deployment_rate,other", *lines]) + "\n"
+
+    def test_noise_of_a_smooth_curve_is_that_which_was_added(self):
+        rng = np.random.default_rng(0)
+        smooth = np.array([np.sin(20 * TIMES), 0.3 * TIMES])
+        self.assertLess(target.noise_of(smooth).max(), 1e-5)
+        noise = np.array([0.01, 0.002])
+        many = [target.noise_of(smooth + noise[:, None] * rng.normal(size=smooth.shape))]
+        self.assertLess(np.abs(many[0] / noise - 1).max(), 0.25)
+
+    def test_curves_of_the_table_are_taken_until_the_time_given(self):
+        found = target.read_target(self.write(self.rows()), until=0.0155)
+        self.assertEqual(found.columns, ("deployment_rate",))
+        self.assertEqual(found.values.tolist(), [list(range(16))])
+
+    def test_tables_that_are_no_curve_are_refused(self):
+        cases = {
+            "no column phase_difference": (self.rows(), ["phase_difference"], 1.0),
+            "no column time": (self.rows().replace("time", "tme"), [], 1.0),
+            "at least": (self.rows(), [], 0.005),
+            "not numbers": (self.rows(row_3="?"), [], 1.0),
+            "grow": (self.rows().replace("0.004,", "0.003,"), [], 1.0),
+            "no column phase_difference or deployment_rate": ("time,a\n0,1\n", [], 1.0),
+        }
+        for said, (text, columns, until) in cases.items():
+            with self.assertRaisesRegex(ValueError, said):
+                target.read_target(self.write(text), columns, until)
+
+
+class TestSurface(unittest.TestCase):
+    def test_region_has_its_width_also_at_the_bounds(self):
+        for point in (LOW, HIGH, 0.5 * (LOW + HIGH), np.array([LOW[0], HIGH[1]])):
+            region = surface.Region.about(point, LOW, HIGH)
+            self.assertTrue(region.holds(np.array([point]))[0])
+            self.assertLess(np.abs(region.high - region.low - 2 * surface.HALF).max(), 1e-12)
+            self.assertTrue((region.low >= LOW).all() and (region.high <= HIGH).all())
+
+    def test_quadratic_curves_and_their_slopes_are_met(self):
+        rng = np.random.default_rng(1)
+        region = surface.Region.about(np.array([4.0, 3.0]), LOW, HIGH)
+        points = rng.uniform(region.low, region.high, size=(9, 2))
+        c = rng.normal(size=(6, 1, 5))
+
+        def curves(p):
+            a, b = p
+            return c[0] + c[1] * a + c[2] * b + c[3] * a * a + c[4] * a * b + c[5] * b * b
+
+        made = surface.Surface(region, points, np.array([curves(p) for p in points]))
+        at = np.array([3.9, 3.2])
+        slopes = [
+            c[1] + 2 * c[3] * at[0] + c[4] * at[1],
+            c[2] + c[4] * at[0] + 2 * c[5] * at[1],
+        ]
+        self.assertLess(np.abs(made(at) - curves(at)).max(), 1e-9)
+        self.assertLess(np.abs(made.slopes(at) - slopes).max(), 1e-9)
+        self.assertLess(made.scatter.max(), 1e-9)
+        self.assertEqual(made.freedom, 3)
+
+    def test_too_few_runs_are_refused(self):
+        region = surface.Region.about(np.array([4.0, 3.0]), LOW, HIGH)
+        with self.assertRaisesRegex(RuntimeError, "too few"):
+            surface.Surface(region, np.zeros((5, 2)), np.zeros((5, 1, 4)))
+
+
+class TestEstimate(unittest.TestCase):
+    """On curves in closed form, whose parameters and scatter are known."""
+
+    def errors(self, noise, scatter, trials=80):
+        """Errors over the standard deviations told, (trials, 2), and these deviations."""
+        truth, off, sigma = np.log([80.0, 30.0]), [], []
+        for seed in range(trials):
+            sail = Sail(scatter, np.random.default_rng(seed))
+            wanted = sail.target(truth, noise)
+            _, found = surface.refine(sail, wanted, truth + 0.1, LOW, HIGH, seed)
+            off.append((found.point - truth) / found.sigma)
+            sigma.append(found.sigma)
+        return np.array(off), np.array(sigma)
+
+    def check(self, noise, scatter):
+        off, sigma = self.errors(noise, scatter)
+        self.assertTrue((np.median(sigma, axis=0) < 0.35).all(), np.median(sigma, axis=0))
+        self.assertTrue((np.std(off, axis=0) > 0.7).all(), np.std(off, axis=0))
+        self.assertTrue((np.std(off, axis=0) < 1.3).all(), np.std(off, axis=0))
+        self.assertTrue((np.abs(np.mean(off, axis=0)) < 0.4).all(), np.mean(off, axis=0))
+
+    def test_uncertainty_is_right_where_noise_rules(self):
+        self.check(noise=0.005, scatter=1e-4)
+
+    def test_uncertainty_is_right_where_scatter_rules(self):
+        self.check(noise=1e-4, scatter=0.003)
+
+    def test_a_model_that_cannot_follow_is_told_and_widens_the_uncertainty(self):
+        truth = np.log([80.0, 30.0])
+        found = []
+        for bump in (0.0, 0.05):
+            sail = Sail(0.001, np.random.default_rng(0))
+            wanted = sail.target(truth, 0.002)
+            values = wanted.values + bump * np.sin(60 * TIMES)
+            wanted = target.Target(TIMES, wanted.columns, values, wanted.noise)
+            found.append(surface.refine(sail, wanted, truth, LOW, HIGH)[1])
+        self.assertLess(found[0].lack_of_fit, 2)
+        self.assertGreater(found[1].lack_of_fit, 4)
+        self.assertTrue((found[1].sigma > 2 * found[0].sigma).all())
+
+    def test_a_parameter_without_effect_is_not_said_to_be_known(self):
+        truth = np.log([50000.0, 30.0])  # far in the saturation
+        low, high = np.log([1000.0, 1.0]), np.log([1e6, 100.0])
+        known = 0
+        for seed in range(30):
+            sail = Sail(0.002, np.random.default_rng(seed))
+            _, found = surface.refine(sail, sail.target(truth, 0.005), truth, low, high, seed)
+            known += found.sigma[0] < surface.HALF
+        self.assertLessEqual(known, 2)  # by chance a slope of scatter looks like one
+
+
+class TestSearch(unittest.TestCase):
+    def test_the_parameters_are_found_in_a_wide_field_with_few_runs(self):
+        for seed, truth in enumerate(np.log([[80.0, 30.0], [20.0, 60.0], [300.0, 20.0]])):
+            sail = Sail(0.002, np.random.default_rng(seed))
+            point = search.search(sail, sail.target(truth, 0.003), LOW, HIGH, seed)
+            self.assertLess(np.abs(point - truth).max(), surface.HALF, np.exp([point, truth]))
+            self.assertLessEqual(len(sail.points), search.FIRST + search.MOST)
+
+
+def calibrate(*arguments):
+    """Run scripts/calibrate.py; returns the CompletedProcess."""
+    command = ["/usr/bin/python3", str(ROOT / "scripts" / "calibrate.py"), *map(str, arguments)]
+    return subprocess.run(
+        command, cwd=scratch(), env=yade_environment(), capture_output=True, text=True
+    )
+
+
+def noisy_run(alpha_crease, beta, seed):
+    """File with the noisy early curves of a run."""
+    folder = scratch() / f"true_{alpha_crease:g}_{beta:g}"
+    options = {"alpha-crease": alpha_crease, "beta": beta, "duration": 0.1, "shapes-interval": 0}
+    flags = [f"--{name}={value}" for name, value in options.items()]
+    done = run_yade(ROOT / "scripts" / "deploy.py", "--out", folder, "--no-pictures", *flags)
+    if done.returncode:
+        raise RuntimeError(done.stderr)
+    table = np.genfromtxt(folder / "history.csv", delimiter=",", names=True)
+    rng = np.random.default_rng(seed)
+    columns = [table[n] + s * rng.standard_normal(len(table)) for n, s in NOISE.items()]
+    path = folder / "target.csv"
+    rows = np.column_stack([table["time"], *columns])
+    np.savetxt(path, rows, delimiter=",", header=",".join(["time", *NOISE]), comments="")
+    return path
+
+
+class TestCommand(unittest.TestCase):
+    def refused(self, said, *arguments):
+        done = calibrate(*arguments)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn(said, done.stderr.splitlines()[-1])
+        self.assertNotIn("Traceback", done.stderr)
+
+    def test_what_cannot_be_is_refused_in_one_sentence(self):
+        path = scratch() / "flat.csv"
+        path.write_text("time,deployment_rate\n" + "".join(f"{i / 200},0.1\n" for i in range(20)))
+        self.refused("not found", scratch() / "absent.csv")
+        self.refused("must be > 0 and grow", path, "--beta", "5", "1")
+        self.refused("is chosen here", path, "--duration=2")
+        self.refused("no column phase_difference", path, "--column", "phase_difference")
+        self.refused("does not vary", path)
+
+    def test_what_the_scene_refuses_ends_the_search_at_once(self):
+        path = scratch() / "line.csv"
+        rows = "".join(f"{i / 1000},{i / 20}\n" for i in range(20))
+        path.write_text("time,deployment_rate\n" + rows)
+        self.refused("thickness = -1.0 m", path, "--thickness=-1")
+
+
+@long
+class TestRecovery(unittest.TestCase):
+    """The real sail: about 40 runs each."""
+
+    def test_known_parameters_are_found_again(self):
+        truth = {"alpha_crease": 45.0, "beta": 35.0}
+        folder = scratch() / "recovered"
+        done = calibrate(noisy_run(**truth, seed=5), "--out", folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = json.loads((folder / "calibration.json").read_text())
+        for name, true in truth.items():
+            about = found["parameters"][name]
+            self.assertLess(about["sigma_of_logarithm"], 0.2, done.stdout)
+            off = abs(np.log(about["value"] / true))
+            self.assertLess(off, 3 * about["sigma_of_logarithm"], done.stdout)
+            self.assertTrue(about["identifiable"])
+        self.assertEqual(found["warnings"], [])
+        for name, noise in NOISE.items():
+            self.assertLess(found["curves"][name]["rms"], 1.5 * noise)
+        picture = (folder / "calibration.png").read_bytes()
+        self.assertEqual(picture[:8], b"\x89PNG\r\n\x1a\n")
+        runs = np.genfromtxt(folder / "runs.csv", delimiter=",", names=True)
+        self.assertEqual(len(runs), found["runs"])
+
+    def test_a_parameter_that_the_curve_does_not_tell_is_warned_of(self):
+        folder = scratch() / "unknown"
+        path = noisy_run(5000.0, 30.0, seed=5)
+        bounds = ["--alpha-crease", "1000", "100000", "--beta", "30", "30"]
+        done = calibrate(path, "--column", "phase_difference", *bounds, "--out", folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("Warning: alpha_crease is not identifiable", done.stdout)
+        found = json.loads((folder / "calibration.json").read_text())
+        self.assertEqual(list(found["parameters"]), ["alpha_crease"])
+
+
+if __name__ == "__main__":
+    unittest.main()

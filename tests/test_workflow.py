@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The Snakemake workflow: cases, command lines, and a sweep on a Slurm of the test's own."""
+
+import importlib
+import json
+import os
+import re
+import subprocess
+import sys
+import time
+import unittest
+
+from slurm import Slurm
+from support import ROOT, long, scratch, yade_environment
+
+sys.path.append(str(ROOT / "scripts"))
+FOLDER = ROOT / "scripts" / "workflow"
+PROFILE = FOLDER / "slurm"
+# Tiny cases of three fold lines; the values of one option are given as Snakemake takes them.
+TINY = """\
+grid:
+  beta: [3, 30]
+  alpha_crease: [100, 1000]
+options:
+  duration: 0.004
+  fold_lines: 3
+  outer_width: 0.279
+  spin_up_tolerance: 0.01
+  force_time_step: false
+out: results
+threads: 1
+memory: 1000
+minutes: 10
+"""
+CASES = {f"beta_{b}-alpha_crease_{a}" for b in (3, 30) for a in (100, 1000)}
+
+
+def command(*options):
+    """Command line of snakemake with the workflow and further options."""
+    return ["snakemake", "--snakefile", str(FOLDER / "Snakefile"), *options]
+
+
+def snakemake(folder, *options):
+    """Run the workflow in `folder`; returns the CompletedProcess, all output as text in stdout."""
+    return subprocess.run(
+        command(*options),
+        cwd=folder,
+        env=yade_environment(),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+
+
+def new_folder(name):
+    """An empty folder with tiny.yaml."""
+    folder = scratch() / name
+    folder.mkdir()
+    (folder / "tiny.yaml").write_text(TINY)
+    return folder
+
+
+class TestPlan(unittest.TestCase):
+    def test_without_a_grid_of_ones_own_the_cases_are_those_of_table_2(self):
+        paper = importlib.import_module("verification.paper")
+        done = snakemake(new_folder("table_2"), "--dry-run", "--printshellcmds", "--jobs", "1")
+        self.assertEqual(done.returncode, 0, done.stdout)
+        found = re.findall(r"--alpha-crease=(\S+) --beta=(\S+)", done.stdout)
+        wanted = {(a, b) for a in paper.ALPHA_CREASE for b in paper.BETA}
+        self.assertEqual({tuple(map(float, pair)) for pair in found}, wanted)
+        self.assertEqual(len(found), len(wanted))
+
+    def test_a_grid_of_ones_own_replaces_it_and_options_go_to_every_case(self):
+        options = ["--configfile", "tiny.yaml", "--dry-run", "--printshellcmds", "--jobs", "1"]
+        done = snakemake(new_folder("plan"), *options)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        lines = [line for line in done.stdout.splitlines() if line.startswith("yade ")]
+        self.assertEqual(len(lines), 4)
+        for line in lines:
+            for option in ("--duration=0.004", "--fold-lines=3", "--no-force-time-step"):
+                self.assertIn(f" {option} ", line)
+        folders = {re.search(r"--out results/cases/(\S+) ", line)[1] for line in lines}
+        self.assertEqual(folders, CASES)
+        # Snakemake cuts what it hands to the job of a case at commas.
+        self.assertNotIn(",", "".join(folders))
+
+
+class TestProfile(unittest.TestCase):
+    """The profile as Snakemake's own command-line parser reads it."""
+
+    def setUp(self):
+        read = "import json, snakemake; p = snakemake.get_argument_parser({!r}); " + (
+            "print(json.dumps(vars(p.parse_args([])), default=str))"
+        )
+        done = subprocess.run(
+            ["/usr/bin/python3", "-c", read.format(str(PROFILE))], capture_output=True, text=True
+        )
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.values = json.loads(done.stdout)
+
+    def test_jobs_are_submitted_watched_and_cancelled(self):
+        self.assertIn("sbatch --parsable ", self.values["cluster"])
+        status = PROFILE / self.values["cluster_status"]
+        self.assertTrue(os.access(status, os.X_OK), status)
+        self.assertEqual(self.values["cluster_cancel"], "scancel")
+        self.assertIs(self.values["keep_going"], True)
+        self.assertIs(self.values["rerun_incomplete"], True)
+
+    def test_every_field_of_the_submission_is_known_to_a_case(self):
+        fields = set(re.findall(r"\{([^}]*)\}", self.values["cluster"]))
+        known = {"rule", "wildcards.case", "threads", "resources.mem_mb", "resources.runtime"}
+        self.assertEqual(fields, known)
+
+
+@long
+class TestSlurm(unittest.TestCase):
+    """A 2 x 2 sweep on a real Slurm; one job is cancelled while it runs."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = new_folder("slurm")
+        options = ["--configfile", "tiny.yaml", "--profile", str(PROFILE), "--latency-wait", "10"]
+        cls.slurm = Slurm()
+        cls.victim = "beta_30-alpha_crease_100"
+        with cls.slurm:
+            environment = {**yade_environment(), **cls.slurm.environment}
+            settings = {"cwd": cls.folder, "env": environment, "text": True}
+            pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
+            first = subprocess.Popen(command(*options), **settings, **pipes)
+            cls.cancelled = cls.cancel(first)
+            cls.first_output, _ = first.communicate()
+            cls.first_code = first.returncode
+            cls.after_first = cls.folders()
+            cls.second = subprocess.run(command(*options), **settings, **pipes)
+            cls.after_second = cls.folders()
+            cls.states = {
+                job: cls.status(job)
+                for job in re.findall(r"external jobid '(\d+)'", cls.first_output)
+            }
+            cls.unknown = cls.status("4000000")
+        cls.unreachable = cls.status("1")
+
+    @classmethod
+    def cancel(cls, workflow):
+        """Cancel the victim's job as soon as it runs; its id, or None if it never did."""
+        while workflow.poll() is None:
+            for job, name, state in cls.slurm.jobs():
+                if name == f"case.{cls.victim}" and state == "RUNNING":
+                    cls.slurm.run("scancel", job)
+                    return job
+            time.sleep(0.1)
+        return None
+
+    @classmethod
+    def status(cls, job):
+        """What the profile's status script says of a job."""
+        done = subprocess.run(
+            [PROFILE / "status.sh", job], env=cls.slurm.environment, capture_output=True, text=True
+        )
+        return done.stdout.strip()
+
+    @classmethod
+    def folders(cls):
+        """Times at which the finished cases were completed, by name [ns]."""
+        files = (cls.folder / "results" / "cases").glob("*/case.json")
+        return {path.parent.name: path.stat().st_mtime_ns for path in files}
+
+    def test_a_cancelled_job_is_noticed_and_the_others_are_completed(self):
+        self.assertIsNotNone(self.cancelled, self.first_output)
+        self.assertNotEqual(self.first_code, 0)
+        self.assertEqual(set(self.after_first), CASES - {self.victim}, self.first_output)
+
+    def test_a_rerun_completes_only_the_case_that_is_missing(self):
+        self.assertEqual(self.second.returncode, 0, self.second.stdout)
+        self.assertEqual(set(self.after_second), CASES)
+        for name, time_completed in self.after_first.items():
+            self.assertEqual(self.after_second[name], time_completed, name)
+        submitted = re.findall(r"Submitted job \d+ with external jobid", self.second.stdout)
+        self.assertEqual(len(submitted), 1, self.second.stdout)
+
+    def test_a_finished_case_that_was_removed_is_planned_again(self):
+        case = self.folder / "results" / "cases" / self.victim
+        away = case.rename(self.folder / "away")
+        try:
+            done = snakemake(self.folder, "--configfile", "tiny.yaml", "--dry-run", "--jobs", "1")
+        finally:
+            away.rename(case)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        planned = re.findall("wildcards: case=(.*)", done.stdout)
+        self.assertEqual(planned, [self.victim], done.stdout)
+
+    def test_the_report_knows_all_cases(self):
+        results = self.folder / "results"
+        page, table = (results / name for name in ("report.html", "cases.csv"))
+        for name in CASES:
+            self.assertIn(name, page.read_text())
+            self.assertRegex(table.read_text(), f"(?m)^{name},.*,complete,")
+
+    def test_the_status_script_tells_every_state_apart(self):
+        self.assertEqual(len(self.states), len(CASES))
+        for job, state in self.states.items():
+            self.assertEqual(state, "failed" if job == self.cancelled else "success")
+        self.assertEqual(self.unknown, "failed")
+        self.assertEqual(self.unreachable, "running")  # nobody answers: ask again
+
+    def test_nothing_is_left_running(self):
+        self.assertEqual(self.slurm.processes(), [])
+        self.assertFalse(self.slurm.folder.exists())
+
+
+class TestLeavesNothing(unittest.TestCase):
+    @long
+    def test_a_test_that_fails_leaves_no_daemon_and_no_job(self):
+        slurm = Slurm()
+        with self.assertRaises(ZeroDivisionError):
+            with slurm:
+                slurm.run("sbatch", "--mem=100", "--output=/dev/null", "--wrap", "sleep 1000")
+                self.assertGreaterEqual(len(slurm.processes()), 3)
+                1 / 0
+        self.assertEqual(slurm.processes(), [])
+        self.assertFalse(slurm.folder.exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
