@@ -115,7 +115,7 @@ class TestMainRun(unittest.TestCase):
     def test_shapes_are_readable_and_hold_the_fields(self):
         mesh = sail_mesh()
         shapes = sorted((self.folder / "shapes").glob("film_*.vtu"))
-        self.assertEqual(len(shapes), 201)
+        self.assertEqual(len(shapes), 101)
         points, values, cells = read_grid(shapes[-1])
         self.assertEqual(cells.tolist(), mesh.triangles.tolist())
         rate = measures.deployment_rate(mesh, points)
@@ -137,7 +137,7 @@ class TestMainRun(unittest.TestCase):
     def test_series_lists_every_shape_with_its_time(self):
         for name in ("film", "sides"):
             text = (self.folder / "shapes" / f"{name}.pvd").read_text()
-            self.assertEqual(text.count("<DataSet"), 201)
+            self.assertEqual(text.count("<DataSet"), 101)
             self.assertIn(f'file="{name}_000200.vtu"', text)
 
 

@@ -87,6 +87,7 @@ class Deployments:
             f"--history-interval={INTERVAL}",
             "--shapes-interval=0",
             "--no-pictures",
+            "--no-report",
             f"--out={folder}",
         ]
 

@@ -16,8 +16,8 @@ def deployment_rate(mesh, positions):
     negative.
     """
     x, y = positions[mesh.outer_edge, :2].T
-    area = 0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))
-    return float(area / mesh.outer_width**2)
+    twice = x[:-1] @ y[1:] + x[-1] * y[0] - y[:-1] @ x[1:] - y[-1] * x[0]
+    return float(0.5 * twice / mesh.outer_width**2)
 
 
 def mean_tip_radius(mesh, positions):

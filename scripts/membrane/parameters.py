@@ -101,7 +101,7 @@ class SailParameters:
     dt: float = _parameter(5e-6, "s", RUN, "time step of the run", above=True)
     duration: float = _parameter(1.0, "s", RUN, "time to run after the release")
     history_interval: float = _parameter(1e-3, "s", RUN, "between rows of history.csv", above=True)
-    shapes_interval: float = _parameter(5e-3, "s", RUN, "between shapes; 0: only first and last")
+    shapes_interval: float = _parameter(1e-2, "s", RUN, "between shapes; 0: only first and last")
     spin_up_damping: float = _parameter(
         0.3, "-", RUN, "local damping during spin-up", above=True, most=0.99
     )
