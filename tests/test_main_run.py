@@ -138,7 +138,7 @@ class TestMainRun(unittest.TestCase):
         for name in ("film", "sides"):
             text = (self.folder / "shapes" / f"{name}.pvd").read_text()
             self.assertEqual(text.count("<DataSet"), 101)
-            self.assertIn(f'file="{name}_000200.vtu"', text)
+            self.assertIn(f'file="{name}_000100.vtu"', text)
 
 
 if __name__ == "__main__":

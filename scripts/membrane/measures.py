@@ -22,17 +22,19 @@ def deployment_rate(mesh, positions):
 
 def mean_tip_radius(mesh, positions):
     """Mean distance of the four tips from the axis [m]; flat: outer_width / sqrt(2)."""
-    return float(np.mean(_radius(positions[mesh.tips])))
+    return float(_radius(positions[mesh.tips]).mean())
 
 
 def mean_edge_middle_radius(mesh, positions):
     """Mean distance of the outer edges' middles from the axis [m]; flat: outer_width / 2."""
-    return float(np.mean(_radius(positions[mesh.outer_edge_middles].mean(axis=1))))
+    middles = positions[mesh.outer_edge_middles]  # between two nodes, or twice the same
+    return float(_radius(0.5 * (middles[:, 0] + middles[:, 1])).mean())
 
 
-def area_strain(mesh, positions):
-    """Relative growth (T,) of the triangles' areas [-]."""
-    rest = triangle_areas(mesh.nodes, mesh.triangles)
+def area_strain(mesh, positions, rest=None):
+    """Relative growth (T,) of the triangles' areas [-]; `rest` (T,) [m2] if known already."""
+    if rest is None:
+        rest = triangle_areas(mesh.nodes, mesh.triangles)
     return triangle_areas(positions, mesh.triangles) / rest - 1
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from yade import wrapper as yade
 
 from . import measures
+from .geometry import triangle_areas
 from .hub import inertia
 from .output import HistoryWriter, VtkSeries, read_history
 
@@ -77,6 +78,9 @@ HUB_UNITS = {
 }
 
 
+THIRDS = np.full(3, 1 / 3)  # of the three sides of a triangle
+
+
 class Recorder:
     """Writes history.csv and the ParaView series of a run.
 
@@ -126,6 +130,7 @@ class Recorder:
         ahead = np.roll(mesh.triangles, -1, axis=1)
         pairs = np.stack([mesh.triangles, ahead], axis=-1).reshape(-1, 2)
         self._triangle_sides = self._rows_of(pairs).reshape(-1, 3)
+        self._rest_areas = triangle_areas(mesh.nodes, mesh.triangles)
         self.frame_times = list(state["times"])
         self._film = VtkSeries(shapes, "film", mesh.triangles, self.frame_times)
         self._lines = VtkSeries(shapes, "sides", self._sides, self.frame_times)
@@ -233,10 +238,8 @@ class Recorder:
         angles = three["crease_angle"]
         most = np.argmax(np.abs(angles - np.pi), axis=1)
         return {
-            "area_strain": measures.area_strain(self.mesh, x),
-            "side_strain": three["side_strain"].mean(axis=1),
-            "tension": three["tension"].mean(axis=1),
-            "buckled": three["buckled"].mean(axis=1),
+            "area_strain": measures.area_strain(self.mesh, x, self._rest_areas),
+            **{name: three[name] @ THIRDS for name in ("side_strain", "tension", "buckled")},
             "crease_angle": angles[np.arange(len(angles)), most],
         }
 

@@ -17,7 +17,7 @@ NODE_MASK = 1 << 29  # of nodes of a MembraneIntegrator
 # What NewtonIntegrator moves: all but facets of the spool and nodes of a MembraneIntegrator.
 INTEGRATED = NODE_MASK - 1 - spool.SPOOL_MASK
 
-LEDGER_PERIOD = 10  # at most so many steps between two looks at all energies
+LEDGER_PERIOD = 20  # at most so many steps between two looks at all energies
 
 _plugin = _load.load()
 
