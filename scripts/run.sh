@@ -38,6 +38,8 @@ usage: scripts/run.sh COMMAND [options]
   calibrate TARGET [options]
                             find the alpha_crease and beta whose run follows a measured curve;
                             options of scripts/calibrate.py
+  sanitize                  the C++ tests under address and undefined-behaviour sanitizers, and the
+                            threads under a race check
   build                     compile the plugin into build/python
   format [--check]          format C++ and Python sources; --check changes nothing and fails where
                             a file is not formatted or a linter complains
@@ -62,6 +64,9 @@ workflow_packages=(snakemake)
 calibrate_packages=(python3-scipy)
 slurm_packages=(slurmctld slurmd slurm-client munge) # for a test
 format_packages=(clang-format black python3-flake8 shellcheck)
+
+# GCC's OpenMP is unknown to the race check, LLVM's tells it of its barriers.
+sanitize_packages=(g++ cmake make libeigen3-dev libgtest-dev clang-14 libclang-rt-14-dev libomp-14-dev)
 
 no_display=(-n) # how YADE is told to do without
 
@@ -201,6 +206,30 @@ run_tests() {
     run_yade "$root/tests/run_tests.py" "$@"
 }
 
+# run_sanitized FOLDER SANITIZERS COMPILER TEST...: builds C++ tests with sanitizers, all if none is named, and runs them.
+run_sanitized() {
+    local folder=$root/$1 sanitizers=$2 compiler=$3
+    local -a tests=("${@:4}")
+    if ! {
+        cmake -S "$root" -B "$folder" -G "Unix Makefiles" -DMEMBRANE_PLUGIN=OFF -DMEMBRANE_SANITIZE="$sanitizers" \
+            -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS=-O1 &&
+            cmake --build "$folder" --parallel "$(nproc)" --target "${tests[@]:-all}"
+    } >"$folder.log" 2>&1; then
+        cat "$folder.log" >&2
+        die "sanitize: the build in $folder failed"
+    fi
+    local IFS='|'
+    ctest --test-dir "$folder" --label-regex kernel --tests-regex "${tests[*]:-.}" --output-on-failure
+}
+
+sanitize() {
+    need "${sanitize_packages[@]}"
+    UBSAN_OPTIONS=print_stacktrace=1 run_sanitized build-asan address,undefined g++
+    OMP_TOOL_LIBRARIES=/usr/lib/llvm-14/lib/libarcher.so \
+        TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1" \
+        run_sanitized build-tsan thread clang++-14 test_Sweep test_Lanczos test_LinearForces
+}
+
 # List the sources of a language; build/ and hidden folders are not searched.
 cpp_sources() { find "$root/pkg" "$root/scripts" "$root/tests" -name '*.[ch]pp'; }
 python_sources() { find "$root/scripts" "$root/tests" "$root/reference" -name '*.py'; }
@@ -309,6 +338,7 @@ calibrate)
     set_environment
     exec python3 "$root/scripts/calibrate.py" "$@"
     ;;
+sanitize) sanitize ;;
 build) compile ;;
 format) format "$@" ;;
 help | -h | --help) usage ;;

@@ -138,7 +138,7 @@ void Sweep::computeBorder(int part, const SweepStep& now) {
         to.crease = Components(border.crease, border.first);
     }
     std::fill(border.dragWeight.begin(), border.dragWeight.end(), 0.);
-    to.dragWeight = border.dragWeight.data() - border.first;
+    to.dragWeight = border.dragWeight.empty() ? nullptr : border.dragWeight.data() - border.first;
     partSums_[part].energy = addGroup(part, to, now, nullptr);
 }
 

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+# The plugin and the Python package, included by the top CMakeLists.txt.
+
+# ---------------------------------------------------------------------------------------------------------------------
+# What they need. YADE is bound to Debian's Python and Boost, so a second copy of either must not be found first.
+
+if(NOT DEFINED Python3_EXECUTABLE AND EXISTS /usr/bin/python3)
+    set(Python3_EXECUTABLE /usr/bin/python3)
+endif()
+find_package(Python3 QUIET COMPONENTS Interpreter Development.Module)
+membrane_require(Python3_FOUND "Python 3 with its headers" python3-dev)
+find_package(Boost 1.74.0 EXACT QUIET)
+membrane_require(Boost_FOUND "Boost 1.74, the version of YADE's package," libboost-dev)
+find_path(GLUT_INCLUDE_DIR GL/glut.h) # and OpenGL's own, to draw in YADE's 3D view; YADE brings the libraries
+membrane_require(GLUT_INCLUDE_DIR "GL/glut.h" libglut-dev)
+
+# ---------------------------------------------------------------------------------------------------------------------
+# The plugin: one Python extension module, whose missing symbols the loaded YADE supplies.
+
+file(GLOB_RECURSE plugin_sources CONFIGURE_DEPENDS pkg/membrane/*.cpp)
+list(REMOVE_ITEM plugin_sources ${mechanics_sources})
+add_library(membrane_plugin OBJECT ${plugin_sources})
+target_link_libraries(membrane_plugin PUBLIC membrane_mechanics)
+target_include_directories(membrane_plugin SYSTEM PRIVATE ${Boost_INCLUDE_DIRS} ${Python3_INCLUDE_DIRS}
+                           ${GLUT_INCLUDE_DIR})
+
+# The macros that shape YADE's classes, as its package was built.
+target_compile_definitions(membrane_plugin PRIVATE YADE_OPENMP YADE_MPI YADE_OPENGL YADE_FEM YADE_REAL_BIT=64)
+if(YADE_SOURCE_DIR)
+    if(NOT EXISTS ${YADE_SOURCE_DIR}/core/Scene.hpp)
+        message(FATAL_ERROR "YADE_SOURCE_DIR=${YADE_SOURCE_DIR} is not a YADE source tree: it has no core/Scene.hpp")
+    endif()
+    # Open MPI by name: other MPI libraries give Scene another layout.
+    find_path(OPENMPI_INCLUDE_DIR mpi.h PATHS /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/openmpi/include NO_DEFAULT_PATH)
+    membrane_require(OPENMPI_INCLUDE_DIR "Open MPI's mpi.h, which YADE's headers include," libopenmpi-dev)
+    target_compile_definitions(membrane_plugin PRIVATE YADE_REAL_DEC=15 YADE_COMPLEX_MP YADE_BOOST_LOG
+                               BOOST_LOG_DYN_LINK MAX_LOG_LEVEL=5 OMPI_SKIP_MPICXX)
+    target_include_directories(membrane_plugin SYSTEM PRIVATE ${YADE_SOURCE_DIR} ${OPENMPI_INCLUDE_DIR})
+else()
+    target_include_directories(membrane_plugin PRIVATE pkg/membrane/yade-abi)
+endif()
+
+set(python_dir ${PROJECT_BINARY_DIR}/python)
+add_library(_membrane MODULE)
+target_link_libraries(_membrane PRIVATE membrane_plugin)
+set_target_properties(_membrane PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${python_dir}/membrane)
+
+# Symbol check: the same objects linked once with nothing left undefined. Neither installed nor ever loaded.
+set(lib_dir /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE})
+set(python_version ${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR})
+set(symbol_sources
+    ${lib_dir}/yade-double/libyade.so
+    ${lib_dir}/yade-double/libpkg_common.so
+    ${lib_dir}/yade-double/libpkg_dem.so
+    ${lib_dir}/libGL.so.1
+    ${lib_dir}/libglut.so.3.12
+    ${lib_dir}/libpython${python_version}.so.1)
+set(boost_libraries python${Python3_VERSION_MAJOR}${Python3_VERSION_MINOR} serialization)
+if(YADE_SOURCE_DIR)
+    list(APPEND boost_libraries log system thread)
+endif()
+foreach(name IN LISTS boost_libraries)
+    list(APPEND symbol_sources ${lib_dir}/libboost_${name}.so.${Boost_VERSION_STRING})
+endforeach()
+set(absent "")
+foreach(file IN LISTS symbol_sources)
+    if(NOT EXISTS ${file})
+        list(APPEND absent ${file})
+    endif()
+endforeach()
+if(absent)
+    message(STATUS "No symbol check, for want of ${absent} (apt-get install yade)")
+else()
+    add_library(membrane_symbols SHARED)
+    target_link_libraries(membrane_symbols PRIVATE membrane_plugin ${symbol_sources})
+    target_link_options(membrane_symbols PRIVATE -Wl,--no-undefined)
+    set_target_properties(membrane_symbols PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/symbol-check)
+endif()
+
+# ---------------------------------------------------------------------------------------------------------------------
+# The Python package, complete in build/python, so that PYTHONPATH=build/python serves.
+
+file(GLOB_RECURSE python_sources CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/scripts scripts/membrane/*.py)
+set(python_copies "")
+foreach(file IN LISTS python_sources)
+    set(source ${PROJECT_SOURCE_DIR}/scripts/${file})
+    add_custom_command(OUTPUT ${python_dir}/${file} DEPENDS ${source}
+                       COMMAND ${CMAKE_COMMAND} -E copy ${source} ${python_dir}/${file} VERBATIM)
+    list(APPEND python_copies ${python_dir}/${file})
+endforeach()
+add_custom_target(membrane_python ALL DEPENDS ${python_copies})
+
+# A file deleted or renamed in scripts/membrane must not live on as a copy.
+file(GLOB_RECURSE stale_copies ${python_dir}/membrane/*.py)
+if(python_copies)
+    list(REMOVE_ITEM stale_copies ${python_copies})
+endif()
+if(stale_copies)
+    file(REMOVE ${stale_copies})
+endif()
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Installation: where every `yade` run finds the package, if the prefix is /usr/local (the default) or /usr.
+
+set(package_dir lib/python${python_version}/dist-packages/membrane)
+install(TARGETS _membrane LIBRARY DESTINATION ${package_dir})
+install(DIRECTORY scripts/membrane/ DESTINATION ${package_dir} FILES_MATCHING PATTERN *.py
+        PATTERN __pycache__ EXCLUDE PATTERN viewer EXCLUDE)
+# The viewer of report.html, if `scripts/run.sh viewer` has made it.
+install(FILES ${python_dir}/membrane/viewer.html DESTINATION ${package_dir} OPTIONAL)
+install(DIRECTORY scripts/ DESTINATION share/membrane FILES_MATCHING PATTERN *.py PATTERN *.fold
+        PATTERN membrane EXCLUDE PATTERN __pycache__ EXCLUDE)
