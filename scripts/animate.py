@@ -2,10 +2,10 @@
 """Renders sail.mp4 and sail.gif from the shapes of runs: `scripts/run.sh animate FOLDER ...`."""
 
 import argparse
-import sys
 from pathlib import Path
 
 from membrane import animation
+from membrane.commands import plain_errors
 
 
 def main():
@@ -13,10 +13,8 @@ def main():
     parser = argparse.ArgumentParser(prog="animate", description=__doc__)
     parser.add_argument("folders", nargs="+", type=Path, metavar="FOLDER", help="output of deploy")
     for folder in parser.parse_args().folders:
-        try:
+        with plain_errors("animate"):
             made = animation.animate(folder)
-        except (OSError, RuntimeError, ValueError) as error:
-            sys.exit(f"animate: {error}")
         for path in made:
             print(path)
 

@@ -21,6 +21,8 @@ from calibration.runs import Deployments
 from calibration.search import misfit, search
 from calibration.surface import HALF, at_bound, refine
 from calibration.target import read_target
+import sweeping  # noqa: F401  (makes parts of membrane importable without YADE)
+from membrane.commands import plain_errors
 
 BOUNDS = {"alpha_crease": (10.0, 1000.0), "beta": (1.0, 100.0)}
 OURS = ("duration", "history-interval", "shapes-interval", "no-pictures")
@@ -164,7 +166,7 @@ def main():
         took = time.monotonic() - start
         print(f"run {count:3d}  {took:5.0f} s  {where}: {off}", file=sys.stderr, flush=True)
 
-    try:
+    with plain_errors("calibrate"):
         target = read_target(arguments.target, arguments.column or (), arguments.until)
         simulate = Deployments(names, target, [*scene, *held], tell)
         print("coarse search: 16 runs, and at most 8 more", file=sys.stderr)
@@ -189,8 +191,6 @@ def main():
             names,
             simulate.points,
         )
-    except (ValueError, RuntimeError, OSError) as error:
-        sys.exit(f"calibrate: {error}")
     for name, about in content["parameters"].items():
         share = 100 * about["sigma_of_logarithm"]
         if about["identifiable"]:

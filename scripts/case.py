@@ -14,6 +14,7 @@ from membrane.batch import batch_row
 from membrane.case import run_case
 from membrane.case_folder import COMPLETE
 from membrane.parameters import add_arguments, from_arguments
+from membrane.commands import plain_errors
 
 
 def command_line():
@@ -45,15 +46,13 @@ def main():
     if not own["out"]:
         sys.exit("case: --out is missing, the folder of the case")
     folder = Path(own["out"])
-    try:
+    with plain_errors("case", "stopped by Ctrl-C; run again it goes on"):
         found = run_case(
             from_arguments(arguments, overrides),
             folder,
             own["checkpoint_every"],
             pictures=not own["no_pictures"],
         )
-    except (ValueError, RuntimeError, OSError) as error:
-        sys.exit(f"case: {error}")
     if found["outcome"] == COMPLETE:
         print(f"Complete: {folder}")
     elif found["time"] is None:

@@ -7,12 +7,12 @@ many times by `yade-batch table.txt scripts/deploy.py` with parameters as the ta
 
 import argparse
 import contextlib
-import sys
 from pathlib import Path
 
 from membrane import report, sail, window
 from membrane.batch import batch_row
 from membrane.parameters import from_arguments, parse
+from membrane.commands import plain_errors
 from yade import utils
 
 
@@ -37,7 +37,7 @@ def command_line():
 
 def main():
     """Deploy the sail; sys.exit with one sentence if that cannot be."""
-    try:
+    with plain_errors("deploy"):
         arguments = command_line()
         overrides, _, case = batch_row()
         folder = arguments.out or (Path("out") / case.replace("/", "_") if case else Path("out"))
@@ -55,8 +55,6 @@ def main():
             from membrane.animation import animate  # loads VTK's renderer
 
             films = animate(folder)
-    except (ValueError, RuntimeError, OSError) as error:
-        sys.exit(f"deploy: {error}")
     found, wall = summary["measures"], summary["wall_time"]
     reached = found["time_of_rate_0.9"]
     print(

@@ -16,7 +16,6 @@ end at the same 2.5 rpm; with `--spin 2.5` it has the flight's spin and ends at 
 """
 
 import argparse
-import sys
 from dataclasses import replace
 from math import pi
 from pathlib import Path
@@ -27,6 +26,7 @@ from membrane import hub, plots, sail
 from membrane.files import write_json
 from membrane.parameters import SailParameters
 from membrane.record import Recorder
+from membrane.commands import plain_errors
 
 RPM = 2 * pi / 60
 THICKNESS = 7.5e-6  # m, of the polyimide film
@@ -162,10 +162,8 @@ def main():
     """Deploy it and tell about the spin; sys.exit with one sentence if that cannot be."""
     arguments = command_line()
     given = {name: getattr(arguments, name) for name in OPTIONS}
-    try:
+    with plain_errors("ikaros"):
         found = deploy(replace(IKAROS, **given), arguments.spin, arguments.out)
-    except (ValueError, RuntimeError, OSError) as error:
-        sys.exit(f"ikaros: {error}")
     spin = found["spin_rpm"]
     print(
         f"Spin {spin['before']:.2f} rpm before, {spin['after']:.2f} rpm after, "

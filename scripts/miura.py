@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 from membrane import pattern_sail
+from membrane.commands import plain_errors
 
 PATTERN = Path(sys.argv[0]).resolve().parent / "patterns" / "miura.fold"
 INSTANTS = (0.0, 0.015, 0.03, 0.05, 0.1, 1.0)  # s
@@ -37,12 +38,10 @@ def main():
     )
     parser.add_argument("--duration", type=float, default=1.0, metavar="S", help="default 1 s")
     arguments = parser.parse_args()
-    try:
+    with plain_errors("miura"):
         chosen = parameters(arguments.duration)
         sheet = pattern_sail.read_sheet(PATTERN, chosen)
         summary = pattern_sail.fly(sheet, chosen, arguments.out, shown=INSTANTS)
-    except (ValueError, RuntimeError, OSError) as error:
-        sys.exit(f"miura: {error}")
     found = summary["measures"]
     print(
         f"Open to {100 * found['final_projected_area']:.1f} % of the flat area after "

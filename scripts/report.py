@@ -2,10 +2,10 @@
 """Writes report.html from the other results of runs: `scripts/run.sh report FOLDER ...`."""
 
 import argparse
-import sys
 from pathlib import Path
 
 from membrane import report
+from membrane.commands import plain_errors
 
 
 def main():
@@ -13,10 +13,8 @@ def main():
     parser = argparse.ArgumentParser(prog="report", description=__doc__)
     parser.add_argument("folders", nargs="+", type=Path, metavar="FOLDER", help="output of deploy")
     for folder in parser.parse_args().folders:
-        try:
+        with plain_errors("report"):
             made = [report.write_report(folder)]
-        except (OSError, RuntimeError, ValueError) as error:
-            sys.exit(f"report: {error}")
         for path in made:
             print(path)
 

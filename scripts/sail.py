@@ -5,12 +5,12 @@ Run it by `scripts/run.sh sail PATTERN.fold|MESH.msh [options]`.
 """
 
 import argparse
-import sys
 from pathlib import Path
 
 from membrane import pattern_sail
 from membrane.parameters import from_arguments, parse
 from membrane.pattern_sail import PatternParameters
+from membrane.commands import plain_errors
 
 
 def command_line():
@@ -28,14 +28,12 @@ def command_line():
 
 def main():
     """Spin the sail; sys.exit with one sentence if that cannot be."""
-    try:
+    with plain_errors("sail"):
         arguments = command_line()
         folder, pictures = arguments.out, not arguments.no_pictures
         parameters = from_arguments(arguments, kind=PatternParameters)
         sheet = pattern_sail.read_sheet(arguments.file, parameters)
         summary = pattern_sail.fly(sheet, parameters, folder, pictures)
-    except (ValueError, RuntimeError, OSError) as error:
-        sys.exit(f"sail: {error}")
     found = summary["measures"]
     print(
         f"Projected area {found['final_projected_area']:.3f} of the flat one after "

@@ -13,6 +13,7 @@ import sys
 from pathlib import Path
 
 import sweeping  # noqa: F401  (makes parts of membrane importable without YADE)
+from membrane.commands import plain_errors
 from membrane.case_folder import COMPLETE, DIVERGED
 from membrane.parameters import (
     TABLE_2_CASES,
@@ -103,9 +104,5 @@ def tell_report(folder):
     return 0 if complete + diverged == len(found) else 1
 
 
-try:
+with plain_errors("sweep", "stopped; the same command goes on from here"):
     sys.exit(main())
-except (ValueError, RuntimeError, OSError) as error:
-    sys.exit(f"sweep: {error}")
-except KeyboardInterrupt:
-    sys.exit("sweep: stopped; the same command goes on from here")
