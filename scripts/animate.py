@@ -4,8 +4,10 @@
 import argparse
 from pathlib import Path
 
-from membrane import animation
 from membrane.commands import plain_errors
+
+with plain_errors("animate"):
+    from membrane import animation
 
 
 def main():

@@ -13,13 +13,16 @@ import importlib
 import sys
 from pathlib import Path
 
+from membrane.commands import plain_errors
+
 SCRIPTS = Path(sys.argv[0]).resolve().parent  # YADE keeps __file__ for itself
 sys.path.append(str(SCRIPTS))
 
-import benchmarks  # noqa: E402  (found only now)
-from benchmarks import lammps, results  # noqa: E402
-from benchmarks.quiet import Quiet  # noqa: E402
-from membrane.sail import versions  # noqa: E402
+with plain_errors("bench"):
+    import benchmarks
+    from benchmarks import lammps, results
+    from benchmarks.quiet import Quiet
+    from membrane.sail import versions
 
 MODULES = {
     "loops": "functors and engine of path law2 beside YADE's own sphere contact",
@@ -112,4 +115,5 @@ def main():
     return 0
 
 
-sys.exit(main())
+with plain_errors("bench"):
+    sys.exit(main())

@@ -9,20 +9,23 @@ About 40 runs of a few seconds. Writes calibration.json, calibration.png and run
 """
 
 import argparse
-import json
 import sys
 import time
 from pathlib import Path
 
-import numpy as np
-from calibration import CHAOS, COLUMNS, NAMES
-from calibration.picture import draw
-from calibration.runs import Deployments
-from calibration.search import misfit, search
-from calibration.surface import HALF, at_bound, refine
-from calibration.target import read_target
 import sweeping  # noqa: F401  (makes parts of membrane importable without YADE)
 from membrane.commands import plain_errors
+from membrane.files import write_json
+from membrane.unfinished import new_results
+
+with plain_errors("calibrate"):
+    import numpy as np
+    from calibration import CHAOS, COLUMNS, NAMES
+    from calibration.picture import draw
+    from calibration.runs import Deployments
+    from calibration.search import misfit, search
+    from calibration.surface import HALF, at_bound, refine
+    from calibration.target import read_target
 
 BOUNDS = {"alpha_crease": (10.0, 1000.0), "beta": (1.0, 100.0)}
 OURS = ("duration", "history-interval", "shapes-interval", "no-pictures")
@@ -177,20 +180,13 @@ def main():
         (fit,) = simulate([found.point])
         if fit is None:
             raise RuntimeError("the run of the parameters found diverges")
-        arguments.out.mkdir(parents=True, exist_ok=True)
         said = warnings(found, names, low, high, arguments.until)
         content = result(found, names, bounds, said, target, fit, surface, len(simulate), scene)
-        (arguments.out / "calibration.json").write_text(json.dumps(content, indent=2) + "\n")
-        write_runs(arguments.out / "runs.csv", simulate, names, target)
-        draw(
-            arguments.out / "calibration.png",
-            target,
-            fit,
-            surface,
-            found,
-            names,
-            simulate.points,
-        )
+        with new_results(arguments.out) as part:
+            write_json(part / "calibration.json", content)
+            write_runs(part / "runs.csv", simulate, names, target)
+            picture = part / "calibration.png"
+            draw(picture, target, fit, surface, found, names, simulate.points)
     for name, about in content["parameters"].items():
         share = 100 * about["sigma_of_logarithm"]
         if about["identifiable"]:

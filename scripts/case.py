@@ -11,10 +11,12 @@ import sys
 from pathlib import Path
 
 from membrane.batch import batch_row
-from membrane.case import run_case
 from membrane.case_folder import COMPLETE
-from membrane.parameters import add_arguments, from_arguments
 from membrane.commands import plain_errors
+from membrane.parameters import add_arguments, from_arguments
+
+with plain_errors("case"):
+    from membrane.case import run_case
 
 
 def command_line():

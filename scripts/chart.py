@@ -14,16 +14,19 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from membrane import scene
+from membrane.commands import plain_errors
+from membrane.files import replace_text
 from membrane.parameters import SailParameters
 from yade import wrapper as yade
 
 SCRIPTS = Path(sys.argv[0]).resolve().parent  # YADE keeps __file__ for itself
 sys.path.append(str(SCRIPTS))
 
-from verification import deployment, spinning  # noqa: E402  (found only now)
+with plain_errors("chart"):
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+    from membrane import scene
+    from verification import deployment, spinning
 
 REFERENCE = SCRIPTS.parent / "reference"
 DURATION, INTERVAL = 0.1, 1e-3  # of the deployments [s]; single curves can be compared so long
@@ -272,7 +275,7 @@ def main():
     mark_pareto(points)
     arguments.out.mkdir(parents=True, exist_ok=True)
     table = arguments.out / "chart.csv"
-    table.write_text(HEADER + "\n".join([COLUMNS, *(p.line() for p in points)]) + "\n")
+    replace_text(table, HEADER + "\n".join([COLUMNS, *(p.line() for p in points)]) + "\n")
     draw(points, arguments.out / "chart.png")
     for question in TITLES:
         for p in sorted((p for p in points if p.question == question), key=lambda p: p.cost):
@@ -285,4 +288,5 @@ def main():
     tell("done")
 
 
-main()
+with plain_errors("chart"):
+    main()

@@ -9,11 +9,14 @@ import argparse
 import contextlib
 from pathlib import Path
 
-from membrane import report, sail, window
 from membrane.batch import batch_row
-from membrane.parameters import from_arguments, parse
 from membrane.commands import plain_errors
+from membrane.parameters import from_arguments, parse
+from membrane.unfinished import new_results
 from yade import utils
+
+with plain_errors("deploy"):
+    from membrane import report, sail, window
 
 
 def command_line():
@@ -43,18 +46,19 @@ def main():
         folder = arguments.out or (Path("out") / case.replace("/", "_") if case else Path("out"))
         parameters = from_arguments(arguments, overrides)
         look = window.Watch() if arguments.watch else sail.look_away
-        summary = sail.deploy(
-            parameters,
-            folder,
-            pictures=not arguments.no_pictures,
-            page=not arguments.no_report,
-            look=look,
-        )
         films = []
-        if arguments.animation:
-            from membrane.animation import animate  # loads VTK's renderer
+        with new_results(folder) as part:
+            summary = sail.deploy(
+                parameters,
+                part,
+                pictures=not arguments.no_pictures,
+                page=not arguments.no_report,
+                look=look,
+            )
+            if arguments.animation:
+                from membrane.animation import animate  # loads VTK's renderer
 
-            films = animate(folder)
+                films = animate(part)
     found, wall = summary["measures"], summary["wall_time"]
     reached = found["time_of_rate_0.9"]
     print(

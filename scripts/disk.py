@@ -3,21 +3,25 @@
 
 A free disk of radius 1 m spins at 10 rad/s and is kicked out of its plane. Frequencies of three
 modes on finer and finer meshes against the closed form: the error falls with the square of the
-cells. Run it by `scripts/run.sh disk`; the picture is disk.png.
+cells. Run it by `scripts/run.sh disk [options]`; the picture is disk.png.
 """
 
+import argparse
 import sys
 from pathlib import Path
 
 import numpy as np
-from matplotlib.figure import Figure
-from membrane import plots, scene
+from membrane.commands import plain_errors
 from yade.wrapper import Omega
 
 sys.path.append(str(Path(sys.argv[0]).resolve().parent))
-from verification.disk_mesh import disk_mesh  # noqa: E402, found by the line above
-from verification.spinning import OMEGA, disk_frequency, frequencies2, spin  # noqa: E402
-from verification.spinning import place, spinning_net  # noqa: E402
+
+with plain_errors("disk"):
+    from matplotlib.figure import Figure
+    from membrane import plots, scene
+    from verification.disk_mesh import disk_mesh
+    from verification.spinning import OMEGA, disk_frequency, frequencies2, place, spin
+    from verification.spinning import spinning_net
 
 CELLS = (4, 8, 16)  # from the centre to the edge
 POISSON = 1 / 3  # that of a net of equilateral triangles, whatever the film's
@@ -47,28 +51,52 @@ def vibrate(cells):
     return found / exact - 1, flat, triangles, swinging
 
 
-runs = [vibrate(cells) for cells in CELLS]
-errors = np.abs([run[0] for run in runs])
-figure = Figure(figsize=(10.5, 3.6))
-axes = figure.add_axes((0.07, 0.14, 0.36, 0.82))
-for name, error in zip(MODES, errors.T):
-    order = np.log2(error[-2] / error[-1])
-    axes.loglog(CELLS, 100 * error, "o-", label=f"{name}: order {order:.2f}")
-    print(f"{name}: error {100 * error[-1]:.3f} % on {CELLS[-1]} cells, order {order:.2f}")
-axes.set_xticks(CELLS, map(str, CELLS))
-axes.set_yticks([0.2, 0.5, 1, 2, 5], ["0.2", "0.5", "1", "2", "5"])
-axes.minorticks_off()
-axes.set(xlabel="cells from centre to edge", ylabel="error of the frequency [%]", ylim=(0.1, None))
-axes.grid(alpha=0.3)
-axes.legend(frameon=False, loc="lower left")
-_, flat, triangles, swinging = runs[-1]
-for k, (name, lift) in enumerate(zip(MODES, swinging)):
-    axes = figure.add_axes((0.45 + 0.18 * k, 0.05, 0.18, 0.85), projection="3d")
-    lift = 0.35 * lift / np.abs(lift).max()
-    axes.plot_trisurf(*flat[:, :2].T, lift, triangles=triangles, cmap="cividis")
-    axes.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-0.5, 0.5))
-    axes.set_box_aspect((1, 1, 0.5), zoom=1.3)
-    axes.set_axis_off()
-    figure.text(0.54 + 0.18 * k, 0.78, name, ha="center")
-figure.savefig("disk.png", dpi=plots.DPI)
-print("Look at disk.png")
+def draw(errors, run, path):
+    """Draw the errors (R, M) over the cells, and the modes of a run of `vibrate`."""
+    figure = Figure(figsize=(10.5, 3.6))
+    axes = figure.add_axes((0.07, 0.14, 0.36, 0.82))
+    for name, error in zip(MODES, errors.T):
+        axes.loglog(CELLS, 100 * error, "o-", label=f"{name}: order {order(error):.2f}")
+    axes.set_xticks(CELLS, map(str, CELLS))
+    axes.set_yticks([0.2, 0.5, 1, 2, 5], ["0.2", "0.5", "1", "2", "5"])
+    axes.minorticks_off()
+    axes.set(xlabel="cells from centre to edge", ylabel="error of the frequency [%]")
+    axes.set_ylim(bottom=0.1)
+    axes.grid(alpha=0.3)
+    axes.legend(frameon=False, loc="lower left")
+    _, flat, triangles, swinging = run
+    for k, (name, lift) in enumerate(zip(MODES, swinging)):
+        axes = figure.add_axes((0.45 + 0.18 * k, 0.05, 0.18, 0.85), projection="3d")
+        lift = 0.35 * lift / np.abs(lift).max()
+        axes.plot_trisurf(*flat[:, :2].T, lift, triangles=triangles, cmap="cividis")
+        axes.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-0.5, 0.5))
+        axes.set_box_aspect((1, 1, 0.5), zoom=1.3)
+        axes.set_axis_off()
+        figure.text(0.54 + 0.18 * k, 0.78, name, ha="center")
+    figure.savefig(path, dpi=plots.DPI)
+
+
+def order(error):
+    """Order of convergence, from the errors (R,) of the two finest meshes."""
+    return np.log2(error[-2] / error[-1])
+
+
+def main():
+    """Vibrate the disks, tell the errors and draw."""
+    parser = argparse.ArgumentParser(prog="disk", description=__doc__.splitlines()[0])
+    parser.add_argument(
+        "--out", type=Path, default=Path("."), metavar="DIR", help="folder of disk.png (default .)"
+    )
+    folder = parser.parse_args().out
+    folder.mkdir(parents=True, exist_ok=True)
+    runs = [vibrate(cells) for cells in CELLS]
+    errors = np.abs([run[0] for run in runs])
+    for name, error in zip(MODES, errors.T):
+        found = f"error {100 * error[-1]:.3f} % on {CELLS[-1]} cells, order {order(error):.2f}"
+        print(f"{name}: {found}")
+    draw(errors, runs[-1], folder / "disk.png")
+    print(f"Look at {folder / 'disk.png'}")
+
+
+with plain_errors("disk"):
+    main()

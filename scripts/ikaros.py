@@ -21,12 +21,15 @@ from math import pi
 from pathlib import Path
 
 import numpy as np
-from matplotlib.figure import Figure
-from membrane import hub, plots, sail
+from membrane.commands import plain_errors
 from membrane.files import write_json
 from membrane.parameters import SailParameters
-from membrane.record import Recorder
-from membrane.commands import plain_errors
+from membrane.unfinished import new_results
+
+with plain_errors("ikaros"):
+    from matplotlib.figure import Figure
+    from membrane import hub, plots, sail
+    from membrane.record import Recorder
 
 RPM = 2 * pi / 60
 THICKNESS = 7.5e-6  # m, of the polyimide film
@@ -162,8 +165,8 @@ def main():
     """Deploy it and tell about the spin; sys.exit with one sentence if that cannot be."""
     arguments = command_line()
     given = {name: getattr(arguments, name) for name in OPTIONS}
-    with plain_errors("ikaros"):
-        found = deploy(replace(IKAROS, **given), arguments.spin, arguments.out)
+    with plain_errors("ikaros"), new_results(arguments.out) as part:
+        found = deploy(replace(IKAROS, **given), arguments.spin, part)
     spin = found["spin_rpm"]
     print(
         f"Spin {spin['before']:.2f} rpm before, {spin['after']:.2f} rpm after, "

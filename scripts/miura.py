@@ -9,8 +9,11 @@ import argparse
 import sys
 from pathlib import Path
 
-from membrane import pattern_sail
 from membrane.commands import plain_errors
+from membrane.unfinished import new_results
+
+with plain_errors("miura"):
+    from membrane import pattern_sail
 
 PATTERN = Path(sys.argv[0]).resolve().parent / "patterns" / "miura.fold"
 INSTANTS = (0.0, 0.015, 0.03, 0.05, 0.1, 1.0)  # s
@@ -41,7 +44,8 @@ def main():
     with plain_errors("miura"):
         chosen = parameters(arguments.duration)
         sheet = pattern_sail.read_sheet(PATTERN, chosen)
-        summary = pattern_sail.fly(sheet, chosen, arguments.out, shown=INSTANTS)
+        with new_results(arguments.out) as part:
+            summary = pattern_sail.fly(sheet, chosen, part, shown=INSTANTS)
     found = summary["measures"]
     print(
         f"Open to {100 * found['final_projected_area']:.1f} % of the flat area after "

@@ -13,14 +13,17 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
-from membrane import measures, scene
+from membrane.commands import plain_errors
+from membrane.files import replace_text
 from membrane.parameters import SailParameters
 from yade import wrapper as yade
 
 SCRIPTS = Path(sys.argv[0]).resolve().parent  # YADE keeps __file__ for itself
 sys.path.append(str(SCRIPTS))
 
-from verification import deployment  # noqa: E402  (found only now)
+with plain_errors("parts"):
+    from membrane import measures, scene
+    from verification import deployment
 
 TABLE = SCRIPTS.parent / "reference" / "parts.csv"
 SAMPLES = (0.05, 0.1)  # [s]; single curves can be compared until then
@@ -197,11 +200,12 @@ def main():
     rows = [line("complete", COMPLETE.parameters().dt, complete, cost["complete"])]
     rows.append(line("spread", COMPLETE.parameters().dt, spread))
     rows += [line(n, p.parameters().dt, changes[n], cost[n]) for n, p in PARTS.items()]
-    TABLE.write_text(HEADER + "\n".join([COLUMNS, *rows]) + "\n")
+    replace_text(TABLE, HEADER + "\n".join([COLUMNS, *rows]) + "\n")
     for name in PARTS:
         print(verdict(name, changes[name], spread, cost[name]))
     print(f"Wrote {TABLE}")
     tell("done")
 
 
-main()
+with plain_errors("parts"):
+    main()

@@ -4,8 +4,10 @@
 import argparse
 from pathlib import Path
 
-from membrane import report
 from membrane.commands import plain_errors
+
+with plain_errors("report"):
+    from membrane import report
 
 
 def main():

@@ -32,7 +32,7 @@ usage: scripts/run.sh COMMAND [options]
   case --out DIR [options]  one deployment that leaves all its results or none and, run again
                             after it was stopped, goes on; options by `scripts/run.sh case --help`
   ikaros [options]          stage 2 of the flight sail on a free hub; options of scripts/ikaros.py
-  disk                      accuracy: a spinning disk against its closed form
+  disk [--out DIR]          accuracy: a spinning disk against its closed form
   workflow [options]        the same sweep as a Snakemake workflow, one job a case, here or on Slurm;
                             options of snakemake, as -j N or --profile scripts/workflow/slurm
   calibrate TARGET [options]

@@ -7,10 +7,13 @@ Run it by `scripts/run.sh sail PATTERN.fold|MESH.msh [options]`.
 import argparse
 from pathlib import Path
 
-from membrane import pattern_sail
-from membrane.parameters import from_arguments, parse
-from membrane.pattern_sail import PatternParameters
 from membrane.commands import plain_errors
+from membrane.parameters import from_arguments, parse
+from membrane.unfinished import new_results
+
+with plain_errors("sail"):
+    from membrane import pattern_sail
+    from membrane.pattern_sail import PatternParameters
 
 
 def command_line():
@@ -33,7 +36,8 @@ def main():
         folder, pictures = arguments.out, not arguments.no_pictures
         parameters = from_arguments(arguments, kind=PatternParameters)
         sheet = pattern_sail.read_sheet(arguments.file, parameters)
-        summary = pattern_sail.fly(sheet, parameters, folder, pictures)
+        with new_results(folder) as part:
+            summary = pattern_sail.fly(sheet, parameters, part, pictures)
     found = summary["measures"]
     print(
         f"Projected area {found['final_projected_area']:.3f} of the flat one after "

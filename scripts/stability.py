@@ -11,6 +11,8 @@ import sys
 import time
 from pathlib import Path
 
+from membrane.commands import plain_errors
+
 SCRIPTS = Path(sys.argv[0]).resolve().parent  # YADE keeps __file__ for itself
 sys.path.append(str(SCRIPTS))
 
@@ -48,4 +50,5 @@ def main():
     return 0
 
 
-sys.exit(main())
+with plain_errors("stability"):
+    sys.exit(main())

@@ -13,8 +13,8 @@ import sys
 from pathlib import Path
 
 import sweeping  # noqa: F401  (makes parts of membrane importable without YADE)
-from membrane.commands import plain_errors
 from membrane.case_folder import COMPLETE, DIVERGED
+from membrane.commands import plain_errors
 from membrane.parameters import (
     TABLE_2_CASES,
     TABLE_2_DURATION,
@@ -22,8 +22,10 @@ from membrane.parameters import (
     add_arguments,
     from_arguments,
 )
-from sweeping import batch, grid
-from sweeping.report import report
+
+with plain_errors("sweep"):
+    from sweeping import batch, grid
+    from sweeping.report import report
 
 
 def command_line():

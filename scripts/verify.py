@@ -12,6 +12,8 @@ import sys
 import time
 from pathlib import Path
 
+from membrane.commands import plain_errors
+
 SCRIPTS = Path(sys.argv[0]).resolve().parent  # YADE keeps __file__ for itself
 sys.path.append(str(SCRIPTS))
 
@@ -94,4 +96,5 @@ def main():
     return 1 if failed else 0
 
 
-sys.exit(main())
+with plain_errors("verify"):
+    sys.exit(main())

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 from membrane import sail
-from membrane.case_folder import DIVERGED, FAILED, KILLED, MISSING, look, part_of
+from membrane.case_folder import DIVERGED, FAILED, KILLED, MISSING, SAVED, look, part_of
 from membrane.parameters import TABLE_2_CASES, SailParameters
 from support import ROOT, long, scratch, yade_environment
 from yade import utils
@@ -95,8 +95,9 @@ def tree(folder):
 
 def saved(folder):
     """How many checkpoints the unfinished cases in a folder have saved."""
-    names = [path.name for path in folder.rglob("checkpoint/*")]
-    return sum(int(name) + 1 for name in names if name.isdecimal())
+    # os.walk passes over folders that go away meanwhile.
+    found = [names for path, names, _ in os.walk(folder) if Path(path).name == SAVED]
+    return sum(int(name) + 1 for names in found for name in names if name.isdecimal())
 
 
 class Killing:

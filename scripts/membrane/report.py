@@ -16,6 +16,7 @@ from .geometry import crease_angles
 from .mesh import mesh_of
 from .output import list_series, read_frame, read_history
 from .parameters import SailParameters
+from .unfinished import name_of
 
 PAGE = "report.html"
 TEMPLATE = Path(__file__).with_name("viewer.html")
@@ -116,7 +117,7 @@ def run_data(folder):
     creases = (mesh.triangles, mesh.creases, mesh.crease_signs)
     angles = np.array([crease_angles(frame, *creases) for frame in frames])
     return {
-        "name": folder.resolve().name,
+        "name": name_of(folder),
         "times": [time for time, _ in shapes],
         "positions": _lengths(frames),
         "triangles": _pack(mesh.triangles, np.uint32),

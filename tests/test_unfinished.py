@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Output folders: earlier results stay whole until a run has all of its own."""
+
+import subprocess
+import unittest
+
+from membrane.unfinished import UNFINISHED, name_of, new_results
+from support import scratch, yade_environment
+
+HOLD = """
+import sys
+from membrane.unfinished import new_results
+with new_results(sys.argv[1]):
+    print("held", flush=True)
+    sys.stdin.read()
+"""
+
+
+class TestNewResults(unittest.TestCase):
+    def setUp(self):
+        self.folder = scratch() / self.id().rpartition(".")[2]
+
+    def write(self, folder, **files):
+        """Text files, `name` for `name.csv`; shapes go into their folder."""
+        (folder / "shapes").mkdir(parents=True)
+        for name, text in files.items():
+            (folder / f"{name}.csv").write_text(text)
+            (folder / "shapes" / f"film_{text}.vtu").write_text(text)
+
+    def found(self):
+        """Text of all files by path below the folder."""
+        files = (path for path in self.folder.rglob("*") if path.is_file())
+        return {str(path.relative_to(self.folder)): path.read_text() for path in files}
+
+    def test_results_take_the_place_of_earlier_ones_and_leave_other_files(self):
+        self.write(self.folder, history="old", mine="of the user")
+        (self.folder / "sail.gif").write_text("made of the earlier shapes")
+        with new_results(self.folder) as part:
+            self.write(part, history="new")
+            self.assertEqual((self.folder / "history.csv").read_text(), "old")
+        self.assertEqual(
+            self.found(),
+            {"history.csv": "new", "shapes/film_new.vtu": "new", "mine.csv": "of the user"},
+        )
+        self.assertFalse((self.folder / UNFINISHED).exists())
+
+    def test_failure_leaves_earlier_results_and_what_there_is_of_the_new(self):
+        self.write(self.folder, history="old")
+        before = self.found()
+        for error in (RuntimeError, KeyboardInterrupt):
+            with self.assertRaises(error), new_results(self.folder) as part:
+                self.assertEqual([path.name for path in part.iterdir()], ["lock"])
+                self.write(part, history="half")
+                raise error
+            left = self.found()
+            self.assertEqual({name: left[name] for name in before}, before)
+            self.assertEqual(left[f"{UNFINISHED}/history.csv"], "half")
+
+    def test_failure_before_the_first_file_leaves_no_trace(self):
+        with self.assertRaises(ValueError), new_results(self.folder / "a" / "b"):
+            raise ValueError
+        self.assertFalse(self.folder.exists())
+        self.folder.mkdir()
+        with self.assertRaises(ValueError), new_results(self.folder):
+            raise ValueError
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_two_runs_at_once_into_one_folder_are_refused(self):
+        script = scratch() / "hold.py"
+        script.write_text(HOLD)
+        holder = subprocess.Popen(
+            ["yade", "-n", "-x", script, self.folder],
+            env=yade_environment(),
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        while "held" not in holder.stdout.readline():
+            self.assertIsNone(holder.poll())
+        with self.assertRaisesRegex(ValueError, "another run is writing"), new_results(self.folder):
+            self.fail("not refused")
+        holder.communicate()
+        self.assertEqual(holder.returncode, 0)
+        with new_results(self.folder):
+            pass
+
+    def test_name_is_that_of_the_output_folder(self):
+        with new_results(self.folder) as part:
+            self.assertEqual(name_of(part), self.folder.name)
+        self.assertEqual(name_of(self.folder), self.folder.name)
+
+
+if __name__ == "__main__":
+    unittest.main()
