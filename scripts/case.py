@@ -7,7 +7,6 @@ the options are columns of the table. Exits with 0 for a case that is complete o
 """
 
 import argparse
-import sys
 from pathlib import Path
 
 from membrane.batch import batch_row
@@ -40,15 +39,15 @@ def command_line():
 def main():
     """Run the case; sys.exit with one sentence if that cannot be."""
     arguments = command_line()
-    overrides, own, _ = batch_row(
-        out=arguments.out,
-        no_pictures=arguments.no_pictures,
-        checkpoint_every=arguments.checkpoint_every,
-    )
-    if not own["out"]:
-        sys.exit("case: --out is missing, the folder of the case")
-    folder = Path(own["out"])
     with plain_errors("case", "stopped by Ctrl-C; run again it goes on"):
+        overrides, own, _ = batch_row(
+            out=arguments.out,
+            no_pictures=arguments.no_pictures,
+            checkpoint_every=arguments.checkpoint_every,
+        )
+        if not own["out"]:
+            raise ValueError("--out is missing, the folder of the case")
+        folder = Path(own["out"])
         found = run_case(
             from_arguments(arguments, overrides),
             folder,

@@ -51,7 +51,8 @@ END
 }
 
 # Debian packages to build and run, to mesh other sails, to verify, to compare the speed with, and to format.
-run_packages=(yade python3-numpy python3-matplotlib python3-vtk9
+# ParaView brings VTK's Python modules along, and cannot be installed beside the others.
+run_packages=(yade python3-numpy python3-matplotlib "python3-vtk9|python3-paraview"
     g++ cmake make libboost-dev libeigen3-dev python3-dev libglut-dev libgtest-dev)
 sail_packages=(python3-gmsh python3-meshio)
 test_packages=(xvfb xauth) # a display for the tests of drawing
@@ -95,20 +96,21 @@ find_root() {
     fi
 }
 
-# need PACKAGE...: installs those that are missing.
+# need PACKAGE...: installs those that are missing; of alternatives a|b the first, unless one is there.
 need() {
     command -v dpkg-query >/dev/null || die "this is not Debian 12: there is no dpkg-query"
     local status package log
-    local -a missing=() as_root=()
-    status=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "$@" 2>/dev/null || true)
+    local -a names missing=() as_root=()
+    mapfile -t names < <(printf '%s\n' "$@" | tr '|' '\n')
+    status=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "${names[@]}" 2>/dev/null || true)
     for package in "$@"; do
-        grep -qxF "installed $package" <<<"$status" || missing+=("$package")
+        grep -qxE "installed (${package//+/\\+})" <<<"$status" || missing+=("${package%%|*}")
     done
     ((${#missing[@]})) || return 0
 
     local by_hand="apt-get update && apt-get install --no-install-recommends ${missing[*]}"
     find_root || die "packages are missing; as root, run: $by_hand"
-    local -a apt=("${as_root[@]}" DEBIAN_FRONTEND=noninteractive apt-get -qy -o DPkg::Lock::Timeout=300)
+    local -a apt=("${as_root[@]}" DEBIAN_FRONTEND=noninteractive apt-get -qy --no-remove -o DPkg::Lock::Timeout=300)
     say "installing ${missing[*]}"
     log=$(mktemp)
     # The package lists may be absent or out of date: fetch them if the first attempt fails.

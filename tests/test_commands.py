@@ -1,61 +1,229 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How commands end on bad days: one sentence, an exit status other than 0, no traceback."""
+"""How commands end on bad days: one sentence, an exit status other than 0, no traceback, and
+earlier results whole."""
 
+import os
+import shutil
 import signal
 import subprocess
+import sys
 import unittest
+from functools import lru_cache
 from pathlib import Path
 
-from support import scratch
+from membrane.sail import LAST_GOOD
+from membrane.unfinished import UNFINISHED
+from support import ROOT, scratch, yade_environment
 
-SCRIPTS = Path(__file__).resolve().parents[1] / "scripts"
-SMALL = ["--fold-lines", "3", "--inner-width", "0.15", "--no-pictures"]
+SCRIPTS = ROOT / "scripts"
+PATTERN = SCRIPTS / "patterns" / "miura.fold"
+SMALL = ["--fold-lines", "3", "--inner-width", "0.15", "--spin-up-tolerance", "1e-3"]
+SHORT = [*SMALL, "--duration", "0.005", "--shapes-interval", "0.002", "--no-report"]
+DIVERGES = [*SMALL, "--duration", "0.2", "--dt", "2.3e-5", "--force-time-step"]
 STOPPED = 130
 
+# Mounts a small file system, copies earlier results onto it, runs a command, and says at the end
+# whether those results are still what they were.
+ON_SMALL_DISK = """
+mount -t tmpfs -o size="$2" none "$1" && cp -r "$3/." "$1" && mount -o remount,"$4" "$1" || exit 77
+folder=$1 earlier=$3
+shift 4
+"$@"
+status=$?
+diff -r "$earlier" "$folder" --exclude=unfinished || exit 78
+exit $status
+"""
 
-def start(script, *options):
+
+def start(script, *options, **environment):
     """A command that runs in a process of its own."""
-    command = ["yade", "-n", "-x", str(SCRIPTS / script), *map(str, options)]
+    command = ["yade", "-n", "-x", SCRIPTS / script, *options]
+    if script in ("sweep.py", "calibrate.py"):
+        command = [shutil.which("python3", path="/usr/bin"), SCRIPTS / script, *options]
     return subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=scratch()
+        [*map(str, command)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        cwd=scratch(),
+        env={**yade_environment(), **environment},
     )
 
 
-class TestCommands(unittest.TestCase):
+def tree(folder):
+    """Contents of all files by path, but for what an unfinished run left."""
+    files = (path.relative_to(folder) for path in folder.rglob("*") if path.is_file())
+    return {path: (folder / path).read_bytes() for path in files if path.parts[0] != UNFINISHED}
+
+
+@lru_cache(maxsize=None)
+def earlier():
+    """Results of a short run."""
+    folder = scratch() / "earlier"
+    process = start("deploy.py", *SHORT, "--out", folder)
+    _, said = process.communicate()
+    assert process.returncode == 0, said
+    return folder
+
+
+class CommandTest(unittest.TestCase):
     def ends(self, process, status, sentence):
         """It ends with a status and a sentence that stands alone on the last line."""
         _, said = process.communicate()
-        self.assertEqual(process.returncode, status, said)
+        self.ended(process.returncode, said, status, sentence)
+
+    def ended(self, returned, said, status, sentence):
+        """The same of one that has ended already."""
+        self.assertEqual(returned, status, said)
         self.assertNotIn("Traceback", said)
         self.assertRegex(said.strip().splitlines()[-1], sentence)
 
+
+class TestCommandLines(CommandTest):
     def test_folder_below_a_file_is_refused(self):
         file = scratch() / "no_folder"
         file.write_text("")
-        for script in ("deploy.py", "case.py", "ikaros.py"):
+        for script in ("deploy.py", "case.py", "ikaros.py", "miura.py", "disk.py"):
             name = script.removesuffix(".py")
             process = start(script, "--out", file / "out")
             self.ends(process, 1, f"^{name}: .*Not a directory")
 
     def test_missing_file_is_named(self):
         self.ends(start("sail.py", "missing.fold"), 1, "^sail: .*'missing.fold'")
+        self.ends(start("calibrate.py", "missing.csv"), 1, "^calibrate: .*missing.csv")
+        for script in ("report.py", "animate.py"):
+            name = script.removesuffix(".py")
+            self.ends(start(script, "missing_folder"), 1, f"^{name}: .*missing_folder")
 
     def test_wrong_option_and_value(self):
         self.ends(start("deploy.py", "--bogus", "1"), 2, "^deploy: error: .*--bogus")
         self.ends(start("deploy.py", "--beta", "-3"), 1, "^deploy: beta = -3.0 must be >= 0")
 
-    def test_control_c_stops_with_a_sentence(self):
+
+class TestTables(CommandTest):
+    """Rows of a table of yade-batch."""
+
+    def run_row(self, script, header, row):
+        table = scratch() / "cases.table"
+        table.write_text(f"{header}\n{row}\n")
+        return start(script, *SMALL, "--out", scratch() / "row", YADE_BATCH=f"{table}:2")
+
+    def test_unknown_column_is_named(self):
+        for script in ("deploy.py", "case.py"):
+            process = self.run_row(script, "betta", "3")
+            self.ends(process, 1, "cases.table: .* 'betta'; did you mean 'beta'")
+
+    def test_unreadable_and_wrong_values(self):
+        for value, sentence in (
+            ("abc", "cases.table, line 2: 'abc' cannot be read"),
+            ("1/0", "cases.table, line 2: '1/0' cannot be read"),
+            ("'x'", "beta = 'x' must be a number"),
+            ("-3", "beta = -3 must be >= 0"),
+        ):
+            with self.subTest(value=value):
+                self.ends(self.run_row("deploy.py", "beta", value), 1, f"^deploy: .*{sentence}")
+
+
+class TestMissingPackages(CommandTest):
+    def without(self, *packages):
+        """Environment in which Python packages cannot be imported."""
+        shadows = scratch() / f"without_{'_'.join(packages)}"
+        for package in packages:
+            (shadows / package).mkdir(parents=True, exist_ok=True)
+            missing = f"raise ModuleNotFoundError('No module named {package}', name='{package}')\n"
+            (shadows / package / "__init__.py").write_text(missing)
+        path = os.pathsep.join([str(shadows), yade_environment()["PYTHONPATH"]])
+        return {"PYTHONPATH": path}
+
+    def test_package_is_named_with_what_installs_it(self):
+        for script, package, options in (
+            ("deploy.py", "vtkmodules", []),
+            ("case.py", "vtkmodules", []),
+            ("report.py", "vtkmodules", [scratch()]),
+            ("animate.py", "vtkmodules", [scratch()]),
+            ("ikaros.py", "matplotlib", []),
+            ("disk.py", "matplotlib", []),
+            ("miura.py", "gmsh", []),
+            ("sail.py", "gmsh", [PATTERN]),
+            ("sweep.py", "jinja2", ["run"]),
+            ("calibrate.py", "scipy", ["target.csv"]),
+        ):
+            with self.subTest(script=script):
+                process = start(script, *options, **self.without(package))
+                debian = {"vtkmodules": "vtk9"}.get(package, package)
+                self.ends(process, 1, f"{script[:-3]}: .*apt-get install python3-{debian}")
+
+
+class TestEarlierResults(CommandTest):
+    def setUp(self):
+        self.folder = scratch() / self.id().rpartition(".")[2]
+        shutil.copytree(earlier(), self.folder)
+
+    def tearDown(self):
+        self.assertGreater(len(tree(self.folder)), 8)
+        self.assertEqual(tree(self.folder), tree(earlier()))
+
+    def test_run_that_diverges_leaves_them_whole(self):
+        process = start("deploy.py", *DIVERGES, "--out", self.folder)
+        self.ends(process, 1, f"^deploy: .* from nowhere.*{UNFINISHED}/{LAST_GOOD}")
+        self.assertTrue((self.folder / UNFINISHED / LAST_GOOD).exists())
+
+    def test_refused_run_leaves_them_whole_and_nothing_else(self):
+        self.ends(start("deploy.py", "--dt", "1", "--out", self.folder), 1, "^deploy: dt = 1.0 s")
+        self.ends(start("sail.py", PATTERN, "--out", self.folder, "--dt", "1"), 1, "^sail: dt = ")
+        self.assertFalse((self.folder / UNFINISHED).exists())
+
+    def test_control_c_leaves_them_whole(self):
         # In the spin-up, and in the run.
-        for script, wanted in (("deploy.py", "spin-up"), ("case.py", "deploying")):
-            folder = scratch() / f"stopped_{wanted}"
-            process = start(script, *SMALL, "--spin-up-tolerance", "1e-3", "--out", folder)
+        for script, wanted, options in (
+            ("deploy.py", "spin-up", SMALL),
+            ("deploy.py", "deploying", SMALL),
+            ("sail.py", "deploying", [PATTERN, "--size", "0.05", "--duration", "20"]),
+        ):
+            process = start(script, *options, "--out", self.folder)
             said = ""
             while wanted not in said:
                 line = process.stderr.readline()
-                self.assertNotEqual(line, "", "it came to its end")
+                self.assertNotEqual(line, "", f"it came to its end: {said}")
                 said += line
             process.send_signal(signal.SIGINT)
             self.ends(process, STOPPED, "stopped by Ctrl-C")
+
+    def check_on_disk(self, size, mode, sentence):
+        """How a run ends on a file system of its own, where earlier results are, too."""
+        place = scratch() / "disk"
+        place.mkdir(exist_ok=True)
+        deploy = ["yade", "-n", "-x", SCRIPTS / "deploy.py", *SHORT, "--out", place]
+        mounted = ["sh", "-c", ON_SMALL_DISK, "sh", place, size, earlier(), mode, *deploy]
+        done = subprocess.run(
+            ["unshare", "--map-root-user", "--mount", *map(str, mounted)],
+            env=yade_environment(),
+            capture_output=True,
+            text=True,
+        )
+        if done.returncode == 77 or done.stderr.startswith("unshare"):
+            self.skipTest("no file system can be mounted here")
+        self.ended(done.returncode, done.stderr, 1, sentence)
+
+    def test_full_disk_leaves_them_whole(self):
+        files = sum(path.stat().st_size // 4096 + 1 for path in earlier().rglob("*"))
+        for room in (1, 40):  # pages
+            size = f"{4 * (files + room)}k"
+            self.check_on_disk(size, "rw", "^deploy: .*[Nn]o space left on device")
+
+    def test_read_only_disk_leaves_them_whole(self):
+        self.check_on_disk("8m", "ro", "^deploy: .*Read-only file system")
+
+
+class TestControlC(CommandTest):
+    def test_case_goes_on_later(self):
+        folder = scratch() / "stopped_case"
+        process = start("case.py", *SMALL, "--out", folder)
+        while "deploying" not in process.stderr.readline():
+            self.assertIsNone(process.poll())
+        process.send_signal(signal.SIGINT)
+        self.ends(process, STOPPED, "stopped by Ctrl-C; run again it goes on")
+        self.assertFalse(folder.exists())
 
 
 if __name__ == "__main__":

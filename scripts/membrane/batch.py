@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a job of yade-batch is to do: its row of the table."""
 
+import difflib
 import os
 from dataclasses import fields
 
@@ -25,11 +26,26 @@ def batch_row(**others):
     others : dict
     name : str or None
         Its description.
+
+    Raises
+    ------
+    ValueError
+        If the table has a column that nobody knows, or the row a value that cannot be read.
     """
-    if not os.environ.get("YADE_BATCH"):
+    place = os.environ.get("YADE_BATCH")
+    if not place:
         return {}, others, None
+    file, _, line = place.rpartition(":")
     defaults = {item.name: item.default for item in fields(SailParameters)}
-    utils.readParamsFromTable(noTableOk=False, **defaults, **others)
+    row = utils.TableParamReader(file).paramDict().get(int(line), {})
+    _check_columns(file, row, {**defaults, **others})
+    try:
+        utils.readParamsFromTable(noTableOk=False, **defaults, **others)
+    except (NameError, SyntaxError, TypeError, ValueError, ArithmeticError) as error:
+        values = " ".join(text for name, text in row.items() if name != "description")
+        raise ValueError(
+            f"{file}, line {line}: '{values}' cannot be read ({error}); words stand in quotes"
+        ) from error
     from yade.params import table
 
     return (
@@ -37,3 +53,12 @@ def batch_row(**others):
         {name: getattr(table, name) for name in others},
         Omega().tags["description"],
     )
+
+
+def _check_columns(file, row, known):
+    """ValueError if a `row` of the table `file` has a column that is not among the `known`."""
+    for name in row:
+        if name not in known and name != "description" and not name.startswith("!"):
+            near = difflib.get_close_matches(name, known, n=1)
+            meant = f"; did you mean '{near[0]}'?" if near else ""
+            raise ValueError(f"{file}: there is no parameter of the column's name '{name}'{meant}")
