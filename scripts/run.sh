@@ -69,6 +69,7 @@ format_packages=(clang-format black python3-flake8 shellcheck)
 # GCC's OpenMP is unknown to the race check, LLVM's tells it of its barriers.
 sanitize_packages=(g++ cmake make libeigen3-dev libgtest-dev clang-14 libclang-rt-14-dev libomp-14-dev)
 
+yade_version=2023.02a
 no_display=(-n) # how YADE is told to do without
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
@@ -134,6 +135,9 @@ configure_and_make() {
 # Brings build/ up to date: silent if it is, else shows what is compiled, and on failure everything.
 compile() {
     need "${run_packages[@]}"
+    local yade
+    yade=$(dpkg-query -W -f='${Version}' yade)
+    [[ $yade == "$yade_version"-* ]] || die "this is built for YADE $yade_version, that of Debian 12, but here is $yade"
     { mkdir -p "$build" && [[ -w $build ]]; } || die "cannot write to $build"
     exec 9>"$build/.lock"
     flock 9 # one build at a time
