@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 from membrane import sail
 from membrane.case_folder import DIVERGED, FAILED, KILLED, MISSING, SAVED, look, part_of
+from membrane.output import read_history
 from membrane.parameters import TABLE_2_CASES, SailParameters
 from support import ROOT, long, scratch, yade_environment
 from yade import utils
@@ -100,6 +101,14 @@ def saved(folder):
     return sum(int(name) + 1 for names in found for name in names if name.isdecimal())
 
 
+def rows(folder):
+    """How many rows a history.csv has."""
+    try:
+        return (folder / "history.csv").read_text().count("\n") - 1
+    except FileNotFoundError:
+        return 0
+
+
 class Killing:
     """Runs a command, kills it after seeded amounts of work, and runs it to its end."""
 
@@ -168,6 +177,23 @@ class TestCase(SweepTest):
         self.same(diverged(), folder)
         self.assertFalse(part_of(folder).exists())
 
+    def test_case_killed_while_tethers_lie_on_the_spool_leaves_the_same_files(self):
+        options = [*SHORT, "--tip-mass", "5e-3", "--duration", "0.19", "--no-pictures"]
+        quiet, folder = scratch() / "wound", scratch() / "killed_wound" / "case"
+        said, _ = start_case(quiet, *options, *OFTEN).communicate()
+        history = read_history(quiet / "history.csv")
+        first = int(np.argmax(history["contact_work"] != 0))
+        self.assertTrue(0 < first < len(history["time"]) - 10)
+        process = start_case(folder, *options, *OFTEN)
+        while process.poll() is None and rows(part_of(folder)) < first + 5:
+            time.sleep(0.001)
+        kill(process)
+        self.assertFalse(folder.exists())
+        process = start_case(folder, *options, *OFTEN)
+        said, _ = process.communicate()
+        self.assertEqual(process.returncode, 0, said)
+        self.same(quiet, folder)
+
     def test_finished_case_is_left_alone_and_another_is_refused(self):
         before = {path: path.stat().st_mtime_ns for path in diverged().rglob("*")}
         process = start_case(diverged(), *TOO_LONG)
@@ -231,6 +257,18 @@ class TestSweep(SweepTest):
         status, said = killing.finish()
         self.assertEqual(status, 0, said)
         self.assertRegex(said, "killed before: it was stopped from outside")
+        self.same(self.folder, folder)
+
+    def test_yade_batch_killed_alone_leaves_the_same_files(self):
+        folder = scratch() / "killed_batch"
+        process = start_sweep(folder, *self.OPTIONS)
+        while process.poll() is None and saved(folder) < 3:
+            time.sleep(0.01)
+        (batch,) = children(process.pid)
+        os.kill(batch, signal.SIGKILL)  # its jobs run on
+        said, _ = process.communicate()
+        self.assertEqual(process.returncode, 0, said)
+        self.assertRegex(said, "it is still running.*; it runs again")
         self.same(self.folder, folder)
 
     def test_lost_case_runs_alone_and_again_if_it_is_killed(self):
