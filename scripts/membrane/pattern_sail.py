@@ -15,7 +15,7 @@ from yade import wrapper as yade_classes
 
 from . import measures, plots, scene
 from .fold_format import FoldFile, FoldFrame, fold_angles, read_fold, write_fold
-from .geometry import area_vectors, crease_angles
+from .geometry import area_vectors, crease_angles, side_rows, triangle_areas
 from .msh import read_msh
 from .parameters import RUN, SailParameters, check, parameter
 from .pattern_mesh import mesh_pattern
@@ -112,7 +112,7 @@ class PatternSail:
         Positions to start from [m].
     tips, hub : (n,) int, node
         With tip masses; driven.
-    letters : tuple
+    lines : tuple
         Sides (E, 2) and FOLD letters (E,) of the mesh.
     """
 
@@ -225,7 +225,7 @@ def _turn(points, a, b, c):
 
 def _node_masses(sheet, p, tips):
     """Masses (N,) [kg] of film and tips, equation (4)."""
-    areas = np.linalg.norm(area_vectors(sheet.nodes, sheet.triangles), axis=1)
+    areas = triangle_areas(sheet.nodes, sheet.triangles)
     masses = np.zeros(len(sheet.nodes))
     np.add.at(masses, sheet.triangles, p.density * p.thickness * areas[:, None] / 3)
     masses[tips] += p.tip_mass
@@ -276,8 +276,7 @@ class PatternRecorder(Recorder):
     def __init__(self, folder, sail, made):
         super().__init__(folder, sail, made, 0.0)
         self._mass = made.masses()
-        self._flat_area = area_vectors(sail.nodes, sail.triangles)
-        self._flat_area = np.linalg.norm(self._flat_area, axis=1).sum()
+        self._flat_area = triangle_areas(sail.nodes, sail.triangles).sum()
 
     def measured(self, time, x):
         """Measures of the shape `x` (N, 3) [m] by name; UNITS has their units."""
@@ -415,8 +414,7 @@ def export(sail, recorder, made, p, path):
     What only this package knows stands under keys of the namespace `membrane:`.
     """
     sides, letters = sail.lines
-    row = {tuple(pair): i for i, pair in enumerate(sides.tolist())}
-    rows = np.array([row[tuple(sorted(pair))] for pair in sail.creases.tolist()], dtype=int)
+    rows = side_rows(sides, sail.creases)
     faces = tuple(sail.triangles)
     masses = np.zeros(len(sail.nodes))
     masses[sail.tips] = p.tip_mass
