@@ -229,6 +229,13 @@ def sheet_mesh(rows, columns, spacing):
     return nodes, np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
 
 
+def tip_masses(mesh, mass):
+    """Masses (N,) [kg] of the nodes of a mesh: `mass` at each of its tips, 0 elsewhere."""
+    masses = np.zeros(len(mesh.nodes))
+    masses[mesh.tips] = mass
+    return masses
+
+
 def _check(outer_width, inner_width, fold_lines, refine, spool_radius, tether_segments):
     """Raise ValueError naming the first bad parameter, its value and its range."""
     counts = {"fold_lines": fold_lines, "refine": refine, "tether_segments": tether_segments}
