@@ -67,6 +67,12 @@ class MembraneScene:
         bodies = yade.Omega().bodies
         return np.array([bodies[i].state.pos for i in self.membrane.bodyIds])
 
+    def place(self, positions):
+        """Put the nodes at `positions` (N, 3) [m]."""
+        bodies = yade.Omega().bodies
+        for i, x in zip(self.membrane.bodyIds, positions.tolist()):
+            bodies[i].state.pos = x
+
     @property
     def fused(self):
         """Whether the nodes are moved by a MembraneIntegrator."""
