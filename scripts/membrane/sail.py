@@ -13,6 +13,7 @@ import yade.config
 from yade import wrapper as yade_classes
 
 from . import __version__, measures, plots, report, scene
+from .case_folder import LAST_GOOD
 from .files import write_json
 from .fold import fold, fold_report
 from .mesh import mesh_of, tip_masses
@@ -24,7 +25,6 @@ from .spool import add_spool
 # The spin-up may take longer steps than the run: no accuracy is asked of it.
 SPIN_UP_STEP = 0.7
 SPIN_UP_TURNS = 15  # of the spool, after which to give up
-LAST_GOOD = "last_good.yade.gz"
 SPIN_UP, RUN = "spin_up", "run"  # stages
 
 

@@ -195,9 +195,11 @@ def set_engines(
         MembraneIntegrator.exchangePeriod. The ledger's energies are brought up to date as seldom,
         but at least every LEDGER_PERIOD steps, for the watch.
     driven : sequence of int
-        Ids of bodies that turn about z at `omega` [rad/s]: spool facets, ends of tethers.
+        Ids of bodies that turn about z: spool facets, ends of tethers.
     touching : sequence of int
         Ids of the membrane's bodies that touch other bodies; empty: no collider at all.
+    omega : float
+        Rate at which the driven bodies turn [rad/s].
     hub_inertia : float, optional
         The driven bodies belong to a hub of this moment of inertia about z [kg m2] that turns
         freely: a FreeHub; `omega` is its spin when it begins. Default: they are driven at `omega`.
@@ -463,12 +465,14 @@ def spin_up(
     begun=None,
     keep=None,
 ):
-    """Bring the sail to rest in a frame that turns at `omega` [rad/s] (MODEL, folding step 3).
+    """Bring the sail to rest in a frame that turns at `omega` (MODEL, folding step 3).
 
     Parameters
     ----------
     sail : MembraneScene
         Its guide nodes and tether ends must be held.
+    omega : float
+        Spin rate [rad/s].
     tolerance : float
         Ends when `residual_energy` has stayed below it for two batches.
     damping : float
