@@ -14,6 +14,7 @@ import sys
 from pathlib import Path
 
 from membrane.commands import plain_errors
+from membrane.progress import announcer
 
 SCRIPTS = Path(sys.argv[0]).resolve().parent  # YADE keeps __file__ for itself
 sys.path.append(str(SCRIPTS))
@@ -85,7 +86,7 @@ def made_with():
 def main():
     """Measure, print the tables, write the file; returns the exit status."""
     arguments = command_line()
-    tell = benchmarks.announcer("bench")
+    tell = announcer("bench")
     settings = benchmarks.Settings(
         rounds=arguments.rounds,
         quick=arguments.quick,

@@ -9,14 +9,14 @@ energy ledger. Run it by `scripts/run.sh chart [options]`. Writes reference/char
 import argparse
 import statistics
 import sys
-import time
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from membrane.commands import plain_errors
 from membrane.files import replace_text
 from membrane.parameters import SailParameters
+from membrane.progress import announcer
 from yade import wrapper as yade
 
 SCRIPTS = Path(sys.argv[0]).resolve().parent  # YADE keeps __file__ for itself
@@ -27,6 +27,7 @@ with plain_errors("chart"):
     from matplotlib.lines import Line2D
     from membrane import scene
     from verification import deployment, spinning
+    from verification.variant import Variant
 
 REFERENCE = SCRIPTS.parent / "reference"
 DURATION, INTERVAL = 0.1, 1e-3  # of the deployments [s]; single curves can be compared so long
@@ -69,41 +70,11 @@ class Point:
 
 
 @dataclass(frozen=True)
-class Setting:
-    """A deployment on the grid.
+class Setting(Variant):
+    """A deployment on the grid; `part` names what was left out."""
 
-    Attributes
-    ----------
-    changes : dict
-        Of SailParameters.
-    part : str
-        What was left out.
-    ledger, rests : bool
-        Keep the ledger; the sail rests elsewhere, so that it must be spun up anew.
-    """
-
-    changes: dict = field(default_factory=dict)
+    duration: float = DURATION  # s
     part: str = ""
-    ledger: bool = True
-    rests: bool = False
-
-    def parameters(self):
-        """Its SailParameters."""
-        return replace(SailParameters(duration=DURATION), **self.changes)
-
-    def start(self):
-        """Positions (N, 3) [m] at the release; the fused path finds them for both."""
-        p = self.parameters()
-        rested = p if self.rests else SailParameters(refine=p.refine)
-        return deployment.equilibrium(replace(rested, path="fused"))
-
-    def step_time(self, steps):
-        """Processor time of a step [s], soon after the release."""
-        deployment.begin(self.parameters(), self.start(), self.ledger)
-        scene.advance(steps // 10)
-        begun = time.process_time()
-        scene.advance(steps)
-        return (time.process_time() - begun) / steps
 
 
 def grid(quick):
@@ -116,11 +87,11 @@ def grid(quick):
     for refine, dt in ((1, 5e-6),) if quick else ((1, 5e-6), (2, 2.5e-6)):
         base = {"refine": refine, "dt": dt}
         parts += [
-            Setting({**base, "beta": 0.0}, "creases", rests=True),
-            Setting({**base, "air_density": 0.0}, "drag"),
-            Setting({**base, "zeta": 0.0}, "damping"),
-            Setting({**base, "gravity": 0.0}, "gravity", rests=True),
-            Setting(base, "ledger", ledger=False),
+            Setting({**base, "beta": 0.0}, part="creases", rests=True),
+            Setting({**base, "air_density": 0.0}, part="drag"),
+            Setting({**base, "zeta": 0.0}, part="damping"),
+            Setting({**base, "gravity": 0.0}, part="gravity", rests=True),
+            Setting(base, part="ledger", ledger=False),
         ]
     return fused + law2 + parts
 
@@ -265,11 +236,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="a small grid")
     parser.add_argument("--out", type=Path, default=REFERENCE, help="folder for chart.csv and .png")
     arguments = parser.parse_args()
-    start = time.perf_counter()
-
-    def tell(text):
-        print(f"chart: {time.perf_counter() - start:5.0f} s: {text}", file=sys.stderr, flush=True)
-
+    tell = announcer("chart")
     points = deployments(grid(arguments.quick), arguments.rounds, arguments.steps, tell)
     points += disks(arguments.quick, tell)
     mark_pareto(points)

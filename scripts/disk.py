@@ -20,7 +20,7 @@ with plain_errors("disk"):
     from matplotlib.figure import Figure
     from membrane import plots, scene
     from verification.disk_mesh import disk_mesh
-    from verification.spinning import OMEGA, disk_frequency, frequencies2, place, spin
+    from verification.spinning import OMEGA, disk_frequency, frequencies2, spin
     from verification.spinning import spinning_net
 
 CELLS = (4, 8, 16)  # from the centre to the edge
@@ -37,7 +37,7 @@ def vibrate(cells):
     disk = scene.add_membrane(nodes, triangles, material=film)
     sail = scene.set_engines(disk, path="fused")
     flat = spinning_net(nodes, disk)  # stretched by its spin
-    place(sail, flat)
+    sail.place(flat)
 
     r, angle = np.hypot(*flat[:, :2].T), np.arctan2(flat[:, 1], flat[:, 0])
     shapes = [r**m * np.cos(m * angle) * (1 - 2 * n * r**2) for m, n in MODES.values()]

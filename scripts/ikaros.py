@@ -23,6 +23,7 @@ from pathlib import Path
 import numpy as np
 from membrane.commands import plain_errors
 from membrane.files import write_json
+from membrane.measures import energy_errors
 from membrane.parameters import SailParameters
 from membrane.unfinished import new_results
 
@@ -131,10 +132,7 @@ def report(p, history, rigid):
         "largest_change_of_hub_energy": float(np.abs(hub - hub[0]).max()),
         "work_of_damping": float(history["damping_work"][-1]),
         "work_of_contacts": float(history["contact_work"][-1]),
-        "largest_energy_imbalance": float(np.abs(history["energy_balance"]).max()),
-        "largest_unexplained_energy": float(
-            np.abs(history["energy_balance"] - history["kink_error"]).max()
-        ),
+        **energy_errors(history),
     }
 
 

@@ -8,22 +8,21 @@ reference/parts.csv and prints advice.
 import argparse
 import statistics
 import sys
-import time
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from membrane.commands import plain_errors
 from membrane.files import replace_text
 from membrane.parameters import SailParameters
-from yade import wrapper as yade
+from membrane.progress import announcer
 
 SCRIPTS = Path(sys.argv[0]).resolve().parent  # YADE keeps __file__ for itself
 sys.path.append(str(SCRIPTS))
 
 with plain_errors("parts"):
-    from membrane import measures, scene
     from verification import deployment
+    from verification.variant import Variant
 
 TABLE = SCRIPTS.parent / "reference" / "parts.csv"
 SAMPLES = (0.05, 0.1)  # [s]; single curves can be compared until then
@@ -48,51 +47,11 @@ COLUMNS = (
 )
 
 
-def drop_collider():
-    """Take the collider out of the engines: nothing touches the spool any more."""
-    omega = yade.Omega()
-    collider = yade.InsertionSortCollider
-    omega.engines = [engine for engine in omega.engines if not isinstance(engine, collider)]
-
-
 @dataclass(frozen=True)
-class Part:
-    """A part that is left out.
+class Part(Variant):
+    """The model without one of its parts."""
 
-    Attributes
-    ----------
-    changes : dict
-        Of SailParameters.
-    rests : bool
-        Whether the sail rests elsewhere without it, so that it must be spun up anew.
-    ledger : bool
-    contact : bool
-        Keep the collider.
-    duration : float
-        Of its run [s].
-    """
-
-    changes: dict = field(default_factory=dict)
-    rests: bool = False
-    ledger: bool = True
-    contact: bool = True
-    duration: float = LAG_TIME
-
-    def parameters(self):
-        """SailParameters without the part."""
-        return replace(SailParameters(duration=self.duration), **self.changes)
-
-    def start(self):
-        """Where the nodes are at the release, (N, 3) [m]."""
-        return deployment.equilibrium(self.parameters() if self.rests else SailParameters())
-
-    def begin(self, positions=None):
-        """Release the sail without the part; returns mesh and MembraneScene."""
-        start = self.start() if positions is None else positions
-        built = deployment.begin(self.parameters(), start, self.ledger)
-        if not self.contact:
-            drop_collider()
-        return built
+    duration: float = LAG_TIME  # s
 
 
 LIGHT = 0.1 * SailParameters().tether_density
@@ -115,27 +74,10 @@ PARTS = {
 def answer(part, positions=None):
     """Rates [-] and phases [deg] at SAMPLES and the largest lag [deg] (NaN: run too short)."""
     p = part.parameters()
-    mesh, built = part.begin(positions)
-    stride, rows = round(INTERVAL / p.dt), round(p.duration / INTERVAL)
-    frames = [built.positions()]
-    for _ in range(rows):
-        scene.advance(stride)
-        frames.append(built.positions())
-    times = INTERVAL * np.arange(rows + 1)
-    azimuths = np.array([measures.tip_azimuths(mesh, x) for x in frames])
-    phase = np.degrees(measures.phase_difference(azimuths, p.omega * times).mean(axis=1))
-    at = [round(t / INTERVAL) for t in SAMPLES]
+    run = deployment.follow(*part.begin(positions), p, INTERVAL)
+    phase, at = np.degrees(run.phase), [run.at(t) for t in SAMPLES]
     lag = -phase.min() if p.duration >= LAG_TIME else np.nan
-    return np.array([*(measures.deployment_rate(mesh, frames[i]) for i in at), *phase[at], lag])
-
-
-def step_time(part, steps):
-    """Processor time of a step [s], soon after the release, on one thread."""
-    part.begin()
-    scene.advance(steps // 10)
-    start = time.process_time()
-    scene.advance(steps)
-    return (time.process_time() - start) / steps
+    return np.array([*run.rate[at], *phase[at], lag])
 
 
 def costs(parts, rounds, steps):
@@ -146,7 +88,7 @@ def costs(parts, rounds, steps):
     steps_taken, ratios = {name: [] for name in parts}, {name: [] for name in parts}
     for _ in range(rounds):
         for name, part in parts.items():
-            base, own = step_time(COMPLETE, steps), step_time(part, steps)
+            base, own = COMPLETE.step_time(steps), part.step_time(steps)
             steps_taken[name].append(1e6 * own)
             ratios[name].append(own / part.parameters().dt / (base / SailParameters().dt))
     return {n: (statistics.median(steps_taken[n]), statistics.median(ratios[n])) for n in parts}
@@ -177,11 +119,7 @@ def main():
     parser.add_argument("--steps", type=int, default=1000, help="steps of each")
     parser.add_argument("--members", type=int, default=3, help="runs that give the spread")
     arguments = parser.parse_args()
-    start = time.perf_counter()
-
-    def tell(text):
-        print(f"parts: {time.perf_counter() - start:5.0f} s: {text}", file=sys.stderr, flush=True)
-
+    tell = announcer("parts")
     tell("the complete model")
     rest = COMPLETE.start()
     complete = answer(COMPLETE)

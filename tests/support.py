@@ -39,6 +39,25 @@ class SceneTest(unittest.TestCase):
         O.reset()
 
 
+class CommandTest(unittest.TestCase):
+    """A test of a command of scripts/."""
+
+    def ends_with_one_sentence(self, done, command, *parts):
+        """A CompletedProcess of `command` has failed with one sentence that holds all `parts`."""
+        self.assertNotIn(done.returncode, (0, None))
+        said = [line for line in done.stderr.splitlines() if f"{command}: " in line]
+        self.assertEqual(len(said), 1, done.stderr)
+        for part in parts:
+            self.assertIn(part, said[0])
+        self.assertNotIn("Traceback", done.stdout + done.stderr)
+
+    def ends_without_a_run(self, command):
+        """`command`, given a folder that holds no run, ends with one sentence about it."""
+        done = run_yade(ROOT / "scripts" / f"{command}.py", scratch() / "nowhere")
+        self.ends_with_one_sentence(done, command)
+        self.assertRegex(done.stderr, f"(?m)^{command}: .*(summary.json|viewer|Xvfb)")
+
+
 class Sheet:
     """A membrane in the scene, whose forces can be asked for in any state, without motion.
 

@@ -13,7 +13,7 @@ import numpy as np
 from membrane import animation
 from membrane.output import list_series
 from membrane.parameters import SailParameters
-from support import ROOT, run_yade, scratch, short_run
+from support import CommandTest, scratch, short_run
 
 MISSING = [program for program in ("Xvfb", "ffmpeg") if not shutil.which(program)]
 
@@ -111,12 +111,9 @@ class TestWithoutTools(unittest.TestCase):
                 animation.animate(scratch())
 
 
-class TestCommand(unittest.TestCase):
+class TestCommand(CommandTest):
     def test_folder_without_a_run_ends_with_one_sentence(self):
-        done = run_yade(ROOT / "scripts" / "animate.py", scratch() / "nowhere")
-        self.assertNotIn(done.returncode, (0, None))
-        self.assertRegex(done.stderr, "(?m)^animate: .*(summary.json|viewer|Xvfb)")
-        self.assertNotIn("Traceback", done.stdout + done.stderr)
+        self.ends_without_a_run("animate")
 
 
 if __name__ == "__main__":

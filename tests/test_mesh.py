@@ -275,6 +275,17 @@ class TestGeometry(unittest.TestCase):
                     found = geometry.crease_angles(nodes, triangles, [crease], [sign])
                     self.assertAlmostEqual(found[0], angle, places=12)
 
+    def test_rows_of_sides_are_found_in_any_order_and_direction(self):
+        rng = np.random.default_rng(5)
+        sides = rng.permutation(geometry.unique_sides(sheet_mesh(3, 4, 1.0)[1])[0])
+        rows = rng.permutation(len(sides))[:7]
+        for pairs in (sides[rows], sides[rows][:, ::-1]):
+            np.testing.assert_array_equal(geometry.side_rows(sides, pairs), rows)
+        self.assertEqual(geometry.side_rows(sides, np.empty((0, 2), dtype=int)).tolist(), [])
+        for stranger in ((0, 11), (3, 400)):
+            with self.assertRaisesRegex(ValueError, f"nodes .{stranger[0]}, {stranger[1]}. are"):
+                geometry.side_rows(sides, np.array([sides[2], stranger]))
+
     def test_mountain_crease_sticks_out_on_the_top_side(self):
         mesh = sail_mesh()
         for sign in (geometry.MOUNTAIN, geometry.VALLEY):

@@ -17,7 +17,7 @@ from membrane.geometry import crease_angles
 from membrane.mesh import sail_mesh
 from membrane.output import list_series, read_frame, read_history
 from membrane.parameters import SailParameters
-from support import ROOT, run_yade, scratch, short_run
+from support import CommandTest, scratch, short_run
 
 try:
     from selenium import webdriver
@@ -330,12 +330,9 @@ class TestReportInBrowser(unittest.TestCase):
             self.assertGreater(self.golden(self.picture()), 0.005, width)
 
 
-class TestCommand(unittest.TestCase):
+class TestCommand(CommandTest):
     def test_folder_without_a_run_ends_with_one_sentence(self):
-        done = run_yade(ROOT / "scripts" / "report.py", scratch() / "nowhere")
-        self.assertNotIn(done.returncode, (0, None))
-        self.assertRegex(done.stderr, "(?m)^report: .*(summary.json|viewer|Xvfb)")
-        self.assertNotIn("Traceback", done.stdout + done.stderr)
+        self.ends_without_a_run("report")
 
 
 if __name__ == "__main__":

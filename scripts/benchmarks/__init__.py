@@ -5,8 +5,6 @@ Each module named in scripts/bench.py has `measure(settings)`, which returns a l
 What is compared is measured in one run, turn by turn, because machines drift: `turns` does it.
 """
 
-import sys
-import time
 from dataclasses import asdict, dataclass
 from math import isfinite
 
@@ -100,13 +98,3 @@ class Entry:
         """All attributes and `holds`, ready for JSON; without target only what is there."""
         known = {**asdict(self), "holds": self.holds}
         return {key: value for key, value in known.items() if value is not None or key == "nodes"}
-
-
-def announcer(prefix):
-    """A function that prints lines of progress to standard error, with the time since now."""
-    start = time.monotonic()
-
-    def tell(text):
-        print(f"{prefix}: {time.monotonic() - start:5.0f} s: {text}", file=sys.stderr, flush=True)
-
-    return tell

@@ -7,6 +7,7 @@ import shutil
 import subprocess
 
 import numpy as np
+from membrane.geometry import side_lengths
 
 from .sheet import SPACING
 
@@ -58,8 +59,7 @@ def input_text(steps):
 def write_data(sheet, path):
     """Write nodes and sides of a Sheet as LAMMPS data; bonds of type 1 are sides of squares."""
     sides = sheet.sides()
-    spans = np.linalg.norm(sheet.nodes[sides[:, 1]] - sheet.nodes[sides[:, 0]], axis=1)
-    kinds = 1 + (spans > 1.2 * SPACING)
+    kinds = 1 + (side_lengths(sheet.nodes, sides) > 1.2 * SPACING)
     ids = 1 + np.arange(len(sheet.nodes))
     ones = np.ones_like(ids)
     box = np.column_stack([sheet.places.min(axis=0) - MARGIN, sheet.places.max(axis=0) + MARGIN])

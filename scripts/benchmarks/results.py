@@ -6,7 +6,8 @@ import os
 import subprocess
 from pathlib import Path
 
-from membrane.sail import write_json
+from membrane.files import write_json
+from membrane.text_table import aligned
 
 ROOT = Path(__file__).resolve().parents[2]
 MEANING = {
@@ -111,12 +112,4 @@ def table(module, entries):
         other = "" if one.other_work is None else f"{one.other_work:.1f}"
         row = (one.name, nodes, f"{one.threads}", value, best, spread, other, one.unit)
         rows.append((*row, target, holds))
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    lines = [
-        "  ".join(
-            text.ljust(width) if i in (0, 7, 8, 9) else text.rjust(width)
-            for i, (text, width) in enumerate(zip(row, widths))
-        ).rstrip()
-        for row in rows
-    ]
-    return [module, *("  " + line for line in lines)]
+    return [module, *("  " + line for line in aligned(rows, left=(0, 7, 8, 9)))]

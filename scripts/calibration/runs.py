@@ -8,11 +8,11 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
+from membrane.case_folder import LAST_GOOD
 from scipy.interpolate import CubicSpline
 
 DEPLOY = Path(__file__).resolve().parents[1] / "deploy.py"
 INTERVAL = 1e-3  # [s] between rows of a run's history
-LAST_GOOD = "last_good.yade.gz"  # left by a run that went wrong
 
 
 class Deployments:

@@ -13,6 +13,7 @@ RESULT = "case.json"  # what came of the case
 FAILURE = "failure.json"  # in the folder NAME.part: why there is none
 BEGUN, LOCK, SAVED = "begun.json", "lock", "checkpoint"  # in NAME.part only
 PART = ".part"
+LAST_GOOD = "last_good.yade.gz"  # scene of a run that went wrong
 
 
 def part_of(folder):

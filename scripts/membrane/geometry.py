@@ -36,6 +36,25 @@ def unique_sides(triangles):
     return np.column_stack(np.divmod(keys, size)), side_of.reshape(-1, 3), shares
 
 
+def side_rows(sides, pairs):
+    """Rows (n,) of `sides` (E, 2), the smaller node first, that join `pairs` (n, 2) of nodes.
+
+    Raises
+    ------
+    ValueError
+        If a pair is no side.
+    """
+    size = 1 + np.max(sides, initial=0)
+    keys = sides[:, 0] * size + sides[:, 1]
+    low, high = np.sort(pairs, axis=1).T
+    order = np.argsort(keys)
+    rows = order[np.searchsorted(keys, low * size + high, sorter=order).clip(max=len(keys) - 1)]
+    wrong = np.any(sides[rows] != np.column_stack([low, high]), axis=1)
+    if np.any(wrong):
+        raise ValueError(f"nodes {tuple(pairs[wrong][0].tolist())} are not the ends of a side")
+    return rows
+
+
 def side_lengths(nodes, sides):
     """Lengths (E,) [m] of `sides` (E, 2) between `nodes` (N, 3) [m]."""
     return np.linalg.norm(nodes[sides[:, 1]] - nodes[sides[:, 0]], axis=1)

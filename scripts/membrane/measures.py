@@ -106,14 +106,7 @@ def swing(time, phase):
 
 
 def lag_and_half_period(time, phase):
-    """Amplitude and half the period of the phase difference.
-
-    Parameters
-    ----------
-    time : (S,) float
-        Times since the release [s].
-    phase : (S,) float
-        Mean phase difference [rad].
+    """Amplitude and half the period of the phase difference; parameters as in `swing`.
 
     Returns
     -------
@@ -127,3 +120,19 @@ def lag_and_half_period(time, phase):
     after = time >= lagged
     lead = time[after][np.argmax(phase[after])]
     return float(np.degrees(found["largest_lag"])), float(lead - lagged)
+
+
+def energy_errors(history):
+    """How far the energies and works of a history (dict of (S,) [J]) are from adding up.
+
+    Returns
+    -------
+    dict
+        `largest_energy_imbalance` [J], and `largest_unexplained_energy` [J]: the same without what
+        the integrator itself leaves where sides buckle or become taut within a step.
+    """
+    balance, kinks = history["energy_balance"], history["kink_error"]
+    return {
+        "largest_energy_imbalance": float(np.abs(balance).max()),
+        "largest_unexplained_energy": float(np.abs(balance - kinks).max()),
+    }

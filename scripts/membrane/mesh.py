@@ -13,7 +13,7 @@ from numbers import Integral
 
 import numpy as np
 
-from .geometry import MOUNTAIN, VALLEY, unique_sides
+from .geometry import MOUNTAIN, VALLEY, side_rows, unique_sides
 
 LINE_KINDS = {"film": 0, "crease": 1, "seam": 2, "tether": 3}
 
@@ -119,7 +119,7 @@ class SailMesh:
         """All sides and cables: (E + 4 tether_segments, 2) node ids and their LINE_KINDS."""
         kinds = np.zeros(len(self.sides), dtype=int)
         for name, chosen in (("crease", self.creases), ("seam", self.seam_sides)):
-            kinds[_rows_of(self.sides, chosen)] = LINE_KINDS[name]
+            kinds[side_rows(self.sides, chosen)] = LINE_KINDS[name]
         tethers = np.full(len(self.cables), LINE_KINDS["tether"])
         return np.concatenate([self.sides, self.cables]), np.concatenate([kinds, tethers])
 
@@ -229,6 +229,13 @@ def sheet_mesh(rows, columns, spacing):
     return nodes, np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
 
 
+def tip_masses(mesh, mass):
+    """Masses (N,) [kg] of the nodes of a mesh: `mass` at each of its tips, 0 elsewhere."""
+    masses = np.zeros(len(mesh.nodes))
+    masses[mesh.tips] = mass
+    return masses
+
+
 def _check(outer_width, inner_width, fold_lines, refine, spool_radius, tether_segments):
     """Raise ValueError naming the first bad parameter, its value and its range."""
     counts = {"fold_lines": fold_lines, "refine": refine, "tether_segments": tether_segments}
@@ -334,13 +341,6 @@ def _middle_nodes(row, refine):
     """Nodes (4, g) of a row at most half a base cell from the petal's middle."""
     cells = row.shape[1] - 1
     return row[:, np.abs(2 * np.arange(cells + 1) - cells) <= refine]
-
-
-def _rows_of(sides, chosen):
-    """Rows of `sides` (lexical order, smaller id first) that hold the `chosen` ones."""
-    size = sides.max() + 1
-    low, high = np.sort(chosen, axis=1).T
-    return np.searchsorted(sides[:, 0] * size + sides[:, 1], low * size + high)
 
 
 def _lock(mesh):

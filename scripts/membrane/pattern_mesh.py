@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .geometry import MOUNTAIN, VALLEY, area_vectors, crease_angles, triangle_areas, unique_sides
+from .geometry import MOUNTAIN, VALLEY, area_vectors, crease_angles, side_rows, triangle_areas
+from .geometry import unique_sides
 from .patterns import face_pairs
 
 MOST_TRIANGLES = 2_000_000
@@ -57,9 +58,7 @@ class SheetMesh:
         """All sides (E, 2) and the FOLD letter of each (E,): B, M, V, or J inside the film."""
         sides, _, shares = unique_sides(self.triangles)
         letters = np.where(shares == 1, "B", "J")
-        row = {tuple(pair): i for i, pair in enumerate(sides.tolist())}
-        rows = [row[tuple(sorted(pair))] for pair in self.creases.tolist()]
-        letters[rows] = np.where(self.crease_signs == MOUNTAIN, "M", "V")
+        letters[side_rows(sides, self.creases)] = np.where(self.crease_signs == MOUNTAIN, "M", "V")
         return sides, letters
 
 

@@ -5,7 +5,6 @@ The sail starts flat, or in the pattern's folded form, turning as a whole; it fl
 hub is driven. Its centre of mass lies on the spin axis.
 """
 
-import time
 from dataclasses import asdict, dataclass, field, fields
 from math import pi
 from pathlib import Path
@@ -14,15 +13,17 @@ import numpy as np
 from yade import wrapper as yade_classes
 
 from . import measures, plots, scene
+from .files import write_json
 from .fold_format import FoldFile, FoldFrame, fold_angles, read_fold, write_fold
-from .geometry import area_vectors, crease_angles
+from .geometry import area_vectors, crease_angles, side_rows, triangle_areas
+from .mesh import tip_masses
 from .msh import read_msh
 from .parameters import RUN, SailParameters, check, parameter
 from .pattern_mesh import mesh_pattern
 from .patterns import crease_pattern, nearest_pose
 from .record import LEDGER_UNITS, Recorder
-from .files import write_json
-from .sail import instants, march, save_last_good, versions
+from .sail import Stopwatch, add_membrane, check_step, counts, instants, march, nearest
+from .sail import save_last_good, set_engines, versions
 
 SHEET, SPIN = "sheet", "spin"
 STEP = 0.5  # of the critical one, by default
@@ -112,7 +113,7 @@ class PatternSail:
         Positions to start from [m].
     tips, hub : (n,) int, node
         With tip masses; driven.
-    letters : tuple
+    lines : tuple
         Sides (E, 2) and FOLD letters (E,) of the mesh.
     """
 
@@ -225,7 +226,7 @@ def _turn(points, a, b, c):
 
 def _node_masses(sheet, p, tips):
     """Masses (N,) [kg] of film and tips, equation (4)."""
-    areas = np.linalg.norm(area_vectors(sheet.nodes, sheet.triangles), axis=1)
+    areas = triangle_areas(sheet.nodes, sheet.triangles)
     masses = np.zeros(len(sheet.nodes))
     np.add.at(masses, sheet.triangles, p.density * p.thickness * areas[:, None] / 3)
     masses[tips] += p.tip_mass
@@ -234,36 +235,8 @@ def _node_masses(sheet, p, tips):
 
 def build(sail, p):
     """Put a PatternSail into the (empty) scene, at its start and turning; returns MembraneScene."""
-    masses = np.zeros(len(sail.nodes))
-    masses[sail.tips] = p.tip_mass
-    membrane = scene.add_membrane(
-        sail.nodes,
-        sail.triangles,
-        sail.creases,
-        sail.crease_signs,
-        positions=sail.start,
-        material=scene.film(p.young, p.poisson, p.density, p.thickness),
-        pointMasses=masses.tolist(),
-        alpha=p.alpha,
-        alphaCrease=p.alpha_crease,
-        interactions=p.path == "law2",
-    )
-    made = scene.set_engines(
-        membrane,
-        path=p.path,
-        exchange_period=p.exchange_period,
-        driven=[membrane.bodyIds[i] for i in sail.hub],
-        omega=p.omega,
-        gravity=(0, 0, -p.gravity),
-        beta=p.beta,
-        gamma=p.gamma,
-        theta0=p.theta0,
-        crease_law=p.crease_law,
-        zeta=p.zeta,
-        air_density=p.air_density,
-        force_time_step=p.force_time_step,
-        energy_tolerance=p.energy_tolerance,
-    )
+    membrane = add_membrane(sail, sail.start, p)
+    made = set_engines(membrane, p, driven=[membrane.bodyIds[i] for i in sail.hub])
     made.hold(sail.hub)
     return made
 
@@ -276,8 +249,7 @@ class PatternRecorder(Recorder):
     def __init__(self, folder, sail, made):
         super().__init__(folder, sail, made, 0.0)
         self._mass = made.masses()
-        self._flat_area = area_vectors(sail.nodes, sail.triangles)
-        self._flat_area = np.linalg.norm(self._flat_area, axis=1).sum()
+        self._flat_area = triangle_areas(sail.nodes, sail.triangles).sum()
 
     def measured(self, time, x):
         """Measures of the shape `x` (N, 3) [m] by name; UNITS has their units."""
@@ -316,28 +288,24 @@ def fly(sheet, p, folder, pictures=True, shown=None):
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    begin = time.monotonic()
+    watch = Stopwatch()
     sail = place(sheet, p)
     made = build(sail, p)
     critical = made.forces.criticalTimeStep()
     dt = p.dt or STEP * critical
-    if dt > critical and not p.force_time_step:
-        raise ValueError(
-            f"dt = {dt} s must be <= {critical:.4g} s, the critical time step of this sail "
-            "(force_time_step overrules)"
-        )
+    check_step(dt, critical, p)
     yade_classes.Omega().dt = dt
     scene.release(made, p.omega, [])
     made.rotation.dead, made.spool.dead = not len(sail.hub), True
     recorder = PatternRecorder(folder, sail, made)
-    started = time.monotonic()
+    watch.lap("build")
     try:
         march(_Steps(dt, p), recorder, lambda row: f"area {row['projected_area']:.3f}")
     except RuntimeError as error:
         raise RuntimeError(f"{error}. {save_last_good(made, folder)}") from error
     finally:
         recorder.close()
-    ended = time.monotonic()
+    wall = watch.lap("run")
     history = recorder.columns()
     export(sail, recorder, made, p, folder / "sail.fold")
     if pictures:
@@ -347,10 +315,7 @@ def fly(sheet, p, folder, pictures=True, shown=None):
         "parameters": asdict(p),
         "versions": versions(),
         "mesh": {
-            "nodes": len(sail.nodes),
-            "triangles": len(sail.triangles),
-            "sides": len(made.membrane.sides),
-            "creases": len(sail.creases),
+            **counts(sail, made.membrane),
             "tips": sail.tips.tolist(),
             "hub": sail.hub.tolist(),
             "film_mass": p.density * p.thickness * made.membrane.area,
@@ -364,14 +329,10 @@ def fly(sheet, p, folder, pictures=True, shown=None):
                 history["time"], history["projected_area"], 0.9
             ),
             "largest_energy": float(history["kinetic_energy"].max()),
-            "largest_energy_imbalance": float(np.abs(history["energy_balance"]).max()),
-            "largest_unexplained_energy": float(
-                np.abs(history["energy_balance"] - history["kink_error"]).max()
-            ),
+            **measures.energy_errors(history),
             "largest_change_of_angular_momentum": float(np.ptp(momentum)),
         },
     }
-    wall = {"build": started - begin, "run": ended - started}
     write_json(folder / "summary.json", summary)
     write_json(folder / "wall_time.json", wall)
     return {**summary, "wall_time": wall}
@@ -403,7 +364,7 @@ def draw(sail, recorder, history, folder, shown=None):
         areas = [area_vectors(x, sail.triangles)[:, 2].sum() for x in recorder.frames]
         picks = instants(times, int(np.argmax(areas)))
     else:
-        picks = np.unique([int(np.argmin(np.abs(times - t))) for t in shown])
+        picks = nearest(times, shown)
     frames = [recorder.frames[i] for i in picks]
     plots.plot_sheets(frames, sail.triangles, sail.tips, folder / "shapes.png", times[picks])
 
@@ -415,11 +376,8 @@ def export(sail, recorder, made, p, path):
     What only this package knows stands under keys of the namespace `membrane:`.
     """
     sides, letters = sail.lines
-    row = {tuple(pair): i for i, pair in enumerate(sides.tolist())}
-    rows = np.array([row[tuple(sorted(pair))] for pair in sail.creases.tolist()], dtype=int)
+    rows = side_rows(sides, sail.creases)
     faces = tuple(sail.triangles)
-    masses = np.zeros(len(sail.nodes))
-    masses[sail.tips] = p.tip_mass
     made_of = {name: getattr(p, name) for name in ("young", "poisson", "density", "thickness")}
     shared = {"edges": sides, "letters": letters, "faces": faces, "unit": "m"}
     flat = np.ptp(sail.nodes[:, 2]) == 0
@@ -430,7 +388,7 @@ def export(sail, recorder, made, p, path):
         title="flat",
         custom={
             "membrane:material": made_of,
-            "vertices_membrane:pointMass": masses.tolist(),
+            "vertices_membrane:pointMass": tip_masses(sail, p.tip_mass).tolist(),
             "vertices_membrane:mass": made.masses().tolist(),
             "edges_membrane:kind": ["crease" if c in "MV" else "film" for c in letters],
             "membrane:hub": sail.hub.tolist(),

@@ -75,3 +75,13 @@ def stages(label, weights, silent=False, stream=None):
     yield begin
     if not silent:
         progress.show(1.0, f"done in {time.monotonic() - progress.start:.1f} s")
+
+
+def announcer(prefix):
+    """A function that prints lines of progress to standard error, with the time since now."""
+    start = time.monotonic()
+
+    def tell(text):
+        print(f"{prefix}: {time.monotonic() - start:5.0f} s: {text}", file=sys.stderr, flush=True)
+
+    return tell

@@ -8,7 +8,7 @@ import numpy as np
 from yade import wrapper as yade
 
 from . import measures
-from .geometry import triangle_areas
+from .geometry import side_lengths, side_rows, triangle_areas
 from .hub import inertia
 from .output import HistoryWriter, VtkSeries, read_history
 
@@ -124,12 +124,13 @@ class Recorder:
         self._rest = np.array(membrane.restLengths)
         self._critical = np.array(membrane.criticalLengths)
         self._kinds = np.array(membrane.sideKinds, dtype=np.int8)
-        self._crease_rows = self._rows_of(np.array(membrane.creases).reshape(-1, 2))
+        creases = np.array(membrane.creases, dtype=int).reshape(-1, 2)
+        self._crease_rows = side_rows(self._sides, creases)
         self._signs = np.zeros(len(self._sides), dtype=np.int8)
         self._signs[self._crease_rows] = membrane.creaseSigns
         ahead = np.roll(mesh.triangles, -1, axis=1)
         pairs = np.stack([mesh.triangles, ahead], axis=-1).reshape(-1, 2)
-        self._triangle_sides = self._rows_of(pairs).reshape(-1, 3)
+        self._triangle_sides = side_rows(self._sides, pairs).reshape(-1, 3)
         self._rest_areas = triangle_areas(mesh.nodes, mesh.triangles)
         self.frame_times = list(state["times"])
         self._film = VtkSeries(shapes, "film", mesh.triangles, self.frame_times)
@@ -147,11 +148,6 @@ class Recorder:
             "first_lead": self._first_lead,
             "phases": self._phases.tolist(),
         }
-
-    def _rows_of(self, pairs):
-        """Rows (n,) in the membrane's sides of pairs (n, 2) of nodes."""
-        row = {tuple(pair): i for i, pair in enumerate(self._sides.tolist())}
-        return np.array([row[tuple(sorted(pair))] for pair in pairs.tolist()], dtype=int)
 
     def history(self, time):
         """Append the measures of the last step, whose forces acted `time` [s] after the release."""
@@ -179,7 +175,7 @@ class Recorder:
 
     def _booked(self, x):
         """What the ledger holds, and the number of buckled sides, by name."""
-        length = np.linalg.norm(x[self._sides[:, 1]] - x[self._sides[:, 0]], axis=1)
+        length = side_lengths(x, self._sides)
         ledger = self.sail.ledger
         crease = ledger.crease  # computed at each call
         return {
@@ -217,7 +213,7 @@ class Recorder:
     def shape(self, time):
         """Append the shape of the last step, at `time` [s], to the ParaView series."""
         x = self.sail.last_positions()
-        length = np.linalg.norm(x[self._sides[:, 1]] - x[self._sides[:, 0]], axis=1)
+        length = side_lengths(x, self._sides)
         angle = np.full(len(self._sides), np.pi)
         angle[self._crease_rows] = self.sail.forces.creaseAngles(x)
         fields = {

@@ -13,9 +13,10 @@ import yade.config
 from yade import wrapper as yade_classes
 
 from . import __version__, measures, plots, report, scene
+from .case_folder import LAST_GOOD
 from .files import write_json
 from .fold import fold, fold_report
-from .mesh import mesh_of
+from .mesh import mesh_of, tip_masses
 from .output import NotFinite
 from .progress import Progress
 from .record import Recorder
@@ -24,7 +25,6 @@ from .spool import add_spool
 # The spin-up may take longer steps than the run: no accuracy is asked of it.
 SPIN_UP_STEP = 0.7
 SPIN_UP_TURNS = 15  # of the spool, after which to give up
-LAST_GOOD = "last_good.yade.gz"
 SPIN_UP, RUN = "spin_up", "run"  # stages
 
 
@@ -60,21 +60,12 @@ def build(p):
         With guide nodes and tether ends held.
     """
     mesh = mesh_of(p)
-    masses = np.zeros(len(mesh.nodes))
-    masses[mesh.tips] = p.tip_mass
-    membrane = scene.add_membrane(
-        mesh.nodes,
-        mesh.triangles,
-        mesh.creases,
-        mesh.crease_signs,
-        mesh.cables,
-        positions=fold(mesh, p.bar_radius, p.arm_radius, p.layer_gap),
-        material=scene.film(p.young, p.poisson, p.density, p.thickness),
+    membrane = add_membrane(
+        mesh,
+        fold(mesh, p.bar_radius, p.arm_radius, p.layer_gap),
+        p,
+        cables=mesh.cables,
         radius=p.tether_radius,
-        pointMasses=masses.tolist(),
-        alpha=p.alpha,
-        alphaCrease=p.alpha_crease,
-        interactions=p.path == "law2",
         cableStiffness=p.tether_stiffness,
         cableDensity=p.tether_density,
     )
@@ -82,14 +73,56 @@ def build(p):
         p.spool_radius, p.spool_height, p.spool_facets, p.spool_young, p.spool_friction
     )
     bodies = np.array(membrane.bodyIds)
-    sail = scene.set_engines(
+    sail = set_engines(
+        membrane,
+        p,
+        driven=facets + bodies[mesh.anchors].tolist(),
+        touching=bodies[np.setdiff1d(mesh.tether_nodes, mesh.anchors)].tolist(),
+        hub_inertia=p.hub_inertia or None,
+    )
+    sail.hold(mesh.anchors)
+    sail.hold(mesh.guide_nodes.ravel())
+    return mesh, sail
+
+
+def add_membrane(mesh, positions, p, **options):
+    """Add a mesh to the scene, of the film and with the tip masses that its parameters name.
+
+    Parameters
+    ----------
+    mesh : SailMesh or PatternSail
+    positions : (N, 3) float
+        Where to put the nodes [m].
+    p : SailParameters or PatternParameters
+    **options
+        Further ones of `scene.add_membrane`.
+
+    Returns
+    -------
+    Membrane
+    """
+    return scene.add_membrane(
+        mesh.nodes,
+        mesh.triangles,
+        mesh.creases,
+        mesh.crease_signs,
+        positions=positions,
+        material=scene.film(p.young, p.poisson, p.density, p.thickness),
+        pointMasses=tip_masses(mesh, p.tip_mass).tolist(),
+        alpha=p.alpha,
+        alphaCrease=p.alpha_crease,
+        interactions=p.path == "law2",
+        **options,
+    )
+
+
+def set_engines(membrane, p, **options):
+    """`scene.set_engines` with what the parameters `p` say; `options` are further ones of it."""
+    return scene.set_engines(
         membrane,
         path=p.path,
         exchange_period=p.exchange_period,
-        driven=facets + bodies[mesh.anchors].tolist(),
-        touching=bodies[np.setdiff1d(mesh.tether_nodes, mesh.anchors)].tolist(),
         omega=p.omega,
-        hub_inertia=p.hub_inertia or None,
         gravity=(0, 0, -p.gravity),
         beta=p.beta,
         gamma=p.gamma,
@@ -99,10 +132,17 @@ def build(p):
         air_density=p.air_density,
         force_time_step=p.force_time_step,
         energy_tolerance=p.energy_tolerance,
+        **options,
     )
-    sail.hold(mesh.anchors)
-    sail.hold(mesh.guide_nodes.ravel())
-    return mesh, sail
+
+
+def check_step(dt, critical, p):
+    """Raise ValueError if `dt` is above the `critical` time step [s] and `p` does not force it."""
+    if dt > critical and not p.force_time_step:
+        raise ValueError(
+            f"dt = {dt} s must be <= {critical:.4g} s, the critical time step of this sail "
+            "(force_time_step overrules)"
+        )
 
 
 def look_away(_):
@@ -285,10 +325,7 @@ def deploy(p, folder, pictures=True, checkpoints=None, page=True, look=look_away
         "parameters": p.as_dict(),
         "versions": versions(),
         "mesh": {
-            "nodes": len(mesh.nodes),
-            "triangles": len(mesh.triangles),
-            "sides": len(sail.membrane.sides),
-            "creases": len(mesh.creases),
+            **counts(mesh, sail.membrane),
             "film_mass": p.density * p.thickness * sail.membrane.area,
         },
         "fold": facts["fold"],
@@ -302,10 +339,7 @@ def deploy(p, folder, pictures=True, checkpoints=None, page=True, look=look_away
             ),
             **measures.swing(history["time"], history["phase_difference"]),
             "largest_spool_work": float(np.abs(history["spool_work"]).max()),
-            "largest_energy_imbalance": float(np.abs(history["energy_balance"]).max()),
-            "largest_unexplained_energy": float(
-                np.abs(history["energy_balance"] - history["kink_error"]).max()
-            ),
+            **measures.energy_errors(history),
         },
     }
     wall["per_step"] = wall[RUN] / max(1, steps)
@@ -329,12 +363,18 @@ def begin(p):
     mesh, sail = build(p)
     folding = asdict(fold_report(mesh, sail.positions()))
     critical = sail.forces.criticalTimeStep()
-    if p.dt > critical and not p.force_time_step:
-        raise ValueError(
-            f"dt = {p.dt} s must be <= {critical:.4g} s, the critical time step of this sail "
-            "(force_time_step overrules)"
-        )
+    check_step(p.dt, critical, p)
     return mesh, sail, {"fold": folding, "critical_time_step": critical}
+
+
+def counts(mesh, membrane):
+    """How many nodes, triangles, sides and creases there are, for summary.json."""
+    return {
+        "nodes": len(mesh.nodes),
+        "triangles": len(mesh.triangles),
+        "sides": len(membrane.sides),
+        "creases": len(mesh.creases),
+    }
 
 
 def write_page(folder):
@@ -376,7 +416,11 @@ def instants(times, last):
 
     They lie closer together early, where more happens.
     """
-    wanted = times[last] * (np.arange(6) / 5) ** 1.5
+    return nearest(times, times[last] * (np.arange(6) / 5) ** 1.5)
+
+
+def nearest(times, wanted):
+    """Indices of those of the `times` (S,) that are nearest to the `wanted` ones, each once."""
     return np.unique([int(np.argmin(np.abs(times - t))) for t in wanted])
 
 

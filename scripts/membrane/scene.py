@@ -67,6 +67,12 @@ class MembraneScene:
         bodies = yade.Omega().bodies
         return np.array([bodies[i].state.pos for i in self.membrane.bodyIds])
 
+    def place(self, positions):
+        """Put the nodes at `positions` (N, 3) [m]."""
+        bodies = yade.Omega().bodies
+        for i, x in zip(self.membrane.bodyIds, positions.tolist()):
+            bodies[i].state.pos = x
+
     @property
     def fused(self):
         """Whether the nodes are moved by a MembraneIntegrator."""
@@ -189,9 +195,11 @@ def set_engines(
         MembraneIntegrator.exchangePeriod. The ledger's energies are brought up to date as seldom,
         but at least every LEDGER_PERIOD steps, for the watch.
     driven : sequence of int
-        Ids of bodies that turn about z at `omega` [rad/s]: spool facets, ends of tethers.
+        Ids of bodies that turn about z: spool facets, ends of tethers.
     touching : sequence of int
         Ids of the membrane's bodies that touch other bodies; empty: no collider at all.
+    omega : float
+        Rate at which the driven bodies turn [rad/s].
     hub_inertia : float, optional
         The driven bodies belong to a hub of this moment of inertia about z [kg m2] that turns
         freely: a FreeHub; `omega` is its spin when it begins. Default: they are driven at `omega`.
@@ -457,12 +465,14 @@ def spin_up(
     begun=None,
     keep=None,
 ):
-    """Bring the sail to rest in a frame that turns at `omega` [rad/s] (MODEL, folding step 3).
+    """Bring the sail to rest in a frame that turns at `omega` (MODEL, folding step 3).
 
     Parameters
     ----------
     sail : MembraneScene
         Its guide nodes and tether ends must be held.
+    omega : float
+        Spin rate [rad/s].
     tolerance : float
         Ends when `residual_energy` has stayed below it for two batches.
     damping : float

@@ -2,14 +2,14 @@
 """What the maps share: a membrane in a scene of its own, bisection, growth, tables and figures."""
 
 import csv
-import os
-import time
+import io
 from pathlib import Path
 
 import membrane as plugin
 import numpy as np
 from matplotlib.figure import Figure
 from membrane import scene
+from membrane.files import replace_text
 from yade import wrapper as yade
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -211,13 +211,12 @@ def folder(quick):
 
 def write_table(path, header, rows):
     """Write rows of numbers and words as CSV, whole or not at all."""
-    part = path.with_name(path.name + ".part")
-    with open(part, "w", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(header)
-        for row in rows:
-            writer.writerow([f"{v:.6g}" if isinstance(v, (float, np.floating)) else v for v in row])
-    os.replace(part, path)
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(header)
+    for row in rows:
+        writer.writerow([f"{v:.6g}" if isinstance(v, (float, np.floating)) else v for v in row])
+    replace_text(path, stream.getvalue())
 
 
 def figure(columns=1, rows=1, width=5.0, height=3.8):
@@ -229,13 +228,3 @@ def figure(columns=1, rows=1, width=5.0, height=3.8):
 def save(drawing, path):
     """Write a picture, without the date in it."""
     drawing.savefig(path, dpi=72, metadata={"Software": None})
-
-
-class Clock:
-    """Seconds since it was made."""
-
-    def __init__(self):
-        self.start = time.monotonic()
-
-    def __call__(self):
-        return time.monotonic() - self.start

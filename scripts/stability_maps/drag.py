@@ -15,7 +15,8 @@ import numpy as np
 from membrane import scene
 from membrane.mesh import sail_mesh
 
-from .common import Model, O, bisect, figure, folder, save, two_triangles, write_table
+from .common import TWO_TRIANGLES, Model, O, bisect, figure, folder, save, two_triangles
+from .common import write_table
 
 FILM, THICKNESS = 1420.0, 7.5e-6  # kg/m3, m
 ATMOSPHERE = 1.204  # kg/m3
@@ -42,7 +43,7 @@ def plate(air, thickness):
     """A Model of a flat plate of two triangles in the x-z plane."""
     return Model(
         two_triangles(np.pi),
-        ((0, 1, 2), (1, 0, 3)),
+        TWO_TRIANGLES,
         material=scene.film(thickness=thickness),
         engine={"air_density": air},
     )

@@ -12,7 +12,7 @@ energy doubles within 600 steps.
 import numpy as np
 from membrane import scene
 from membrane.fold import fold
-from membrane.mesh import sail_mesh
+from membrane.mesh import sail_mesh, tip_masses
 
 from .common import Model, O, bisect, figure, folder, grows, save, write_table
 
@@ -41,15 +41,13 @@ def sail(refine=1, zeta=0.0, beta=0.0, law="paper", segments=4, tip=TIP_MASS, tu
     Returns the mesh and a Model.
     """
     mesh = sail_mesh(refine=refine, tether_segments=segments)
-    masses = np.zeros(len(mesh.nodes))
-    masses[mesh.tips] = tip
     model = Model(
         mesh.nodes,
         mesh.triangles,
         creases=mesh.creases,
         crease_signs=mesh.crease_signs * (-1 if turned else 1),
         cables=mesh.cables,
-        pointMasses=masses.tolist(),
+        pointMasses=tip_masses(mesh, tip).tolist(),
         alphaCrease=1000.0,
         engine={"zeta": zeta, "beta": beta, "crease_law": law},
     )

@@ -10,6 +10,8 @@ from dataclasses import asdict, dataclass
 from math import isfinite
 from pathlib import Path
 
+from membrane.text_table import aligned
+
 ROOT = Path(__file__).resolve().parents[2]
 if str(ROOT) not in sys.path:
     sys.path.append(str(ROOT))  # for `from reference import forces`
@@ -96,12 +98,4 @@ def table(module, found):
         )
         for check in found
     ]
-    widths = [max(len(row[column]) for row in [head, *rows]) for column in range(len(head))]
-    aligned = [
-        "  ".join(
-            text.ljust(w) if i in (0, 4, 5) else text.rjust(w)
-            for i, (text, w) in enumerate(zip(row, widths))
-        ).rstrip()
-        for row in [head, *rows]
-    ]
-    return [module, *("  " + line for line in aligned)]
+    return [module, *("  " + line for line in aligned([head, *rows], left=(0, 4, 5)))]

@@ -111,8 +111,7 @@ def begin(p, positions, ledger=True):
     omega = yade.Omega()
     omega.reset()
     mesh, built = sail.build(p)
-    for i, place in zip(built.membrane.bodyIds, positions.tolist()):
-        omega.bodies[i].state.pos = place
+    built.place(positions)
     omega.dt = p.dt
     scene.release(built, p.omega, mesh.guide_nodes.ravel())
     built.ledger.dead = not ledger
@@ -136,11 +135,27 @@ def deploy(p, interval, *, positions=None, ledger=False):
     -------
     Deployment
     """
+    start = equilibrium(p) if positions is None else positions
+    return follow(*begin(p, start, ledger), p, interval)
+
+
+def follow(mesh, built, p, interval):
+    """Run a released sail for p.duration, with rows every `interval` [s], a multiple of p.dt.
+
+    Parameters
+    ----------
+    mesh : SailMesh
+    built : MembraneScene
+    p : SailParameters
+    interval : float
+
+    Returns
+    -------
+    Deployment
+    """
     stride, rows = round(interval / p.dt), round(p.duration / interval)
     if rows < 1 or abs(stride * p.dt / interval - 1) > 1e-9:
         raise ValueError(f"interval = {interval} s must be a multiple of dt = {p.dt} s")
-    start = equilibrium(p) if positions is None else positions
-    mesh, built = begin(p, start, ledger)
     frames, book = [built.positions()], [(0.0, 0.0, 0.0, 0.0, 0.0)]
     for _ in range(rows):
         scene.advance(stride)
@@ -463,16 +478,7 @@ def ensemble_checks():
 
 
 def checks(full):
-    """Checks of the deployment: order in time; `full`, also ledgers, meshes and the ensemble.
-
-    Parameters
-    ----------
-    full : bool
-
-    Returns
-    -------
-    list of Check
-    """
+    """Checks of the deployment: order in time; `full`, also ledgers, meshes and the ensemble."""
     found = order_checks(full)
     if full:
         found += ledger_checks() + convergence_checks() + ensemble_checks()

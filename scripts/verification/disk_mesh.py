@@ -6,6 +6,8 @@ from math import gamma
 import numpy as np
 from membrane import geometry
 
+from reference import forces as paper
+
 MAP_STEPS = 400
 
 
@@ -88,14 +90,9 @@ def side_stiffness(nodes, triangles, young, poisson, thickness):
 
     Columns: sides (0, 1), (1, 2), (2, 0).
     """
-    span = np.roll(nodes[triangles], -1, axis=1) - nodes[triangles]
-    squared = np.sum(span**2, axis=2)
-    area = geometry.triangle_areas(nodes, triangles)[:, None, None]
-    sine2 = 4 * area**2 / (squared[:, :, None] * squared[:, None, :])
-    sine2[:, range(3), range(3)] = 0
-    share = (1 - (1 + poisson) * sine2) ** 2 * squared[:, None, :]
-    ones = np.ones((len(triangles), 3, 1))
-    return young * thickness * (area * np.linalg.solve(share, ones))[:, :, 0]
+    lengths = paper.side_lengths_of_triangles(nodes, triangles)
+    opposite = paper.triangle_stiffness(lengths, young, poisson, thickness)
+    return np.roll(opposite, 1, axis=1)  # the side opposite corner 2 is (0, 1)
 
 
 def triangle_stress(nodes, triangles, shares, rest, thickness):

@@ -553,17 +553,7 @@ def bound_checks(full, effects, seen, states):
 
 
 def checks(full):
-    """Checks of all forces, each over all sails and states.
-
-    Parameters
-    ----------
-    full : bool
-        Three seeds instead of one, and a refined sail.
-
-    Returns
-    -------
-    list of Check
-    """
+    """Checks of all forces, over all sails and states; `full`, three seeds and a refined sail."""
     agreement, effects, energies, laws, seen, states = {}, {}, {}, {}, {}, 0
     for name, (options, seeds) in (FULL if full else FAST).items():
         sail = StandingSail(**options)

@@ -145,16 +145,7 @@ def known_swing():
 
 
 def checks(full):
-    """Checks of Table 2's cases; fast, only of what is measured, for each case takes half a minute.
-
-    Parameters
-    ----------
-    full : bool
-
-    Returns
-    -------
-    list of Check
-    """
+    """Checks of Table 2's cases, each of half a minute; if not `full`, of what is measured."""
     found = known_swing()
     if not full:
         return found

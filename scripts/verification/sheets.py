@@ -467,17 +467,7 @@ def calculix_checks():
 
 
 def checks(full):
-    """Checks of sheets and of the petal.
-
-    Parameters
-    ----------
-    full : bool
-        Finer petals too, and CalculiX.
-
-    Returns
-    -------
-    list of Check
-    """
+    """Checks of sheets and of the petal; `full`, finer petals too, and CalculiX."""
     refines = REFINES if full else FAST_REFINES
     found = triangle_checks() + sheet_checks(refines) + petal_checks(refines, full)
     return found + (calculix_checks() if full else [])

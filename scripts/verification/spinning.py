@@ -200,13 +200,6 @@ def order(values):
     return float(np.log2((values[-3] - values[-2]) / (values[-2] - values[-1])))
 
 
-def place(sail, positions):
-    """Put the nodes at `positions` (N, 3) [m]."""
-    bodies = yade.Omega().bodies
-    for i, x in zip(sail.membrane.bodyIds, positions.tolist()):
-        bodies[i].state.pos = x
-
-
 # --- string and tether ---
 
 
@@ -304,7 +297,7 @@ def spin_string(
     sail = scene.set_engines(chain, driven=chain.bodyIds[:1], omega=OMEGA)
     sail.hold([0])
     nodes[:, 0] = stretched_chain(chain, hub)
-    place(sail, nodes)
+    sail.place(nodes)
     unbalanced = imbalance(sail)
 
     masses = sail.masses()
@@ -491,7 +484,7 @@ def spin_disk(cells, *, even=True, poisson=DISK_POISSON, turns=1.5, path="law2",
     net = scene.add_membrane(nodes, triangles, material=film)
     sail = scene.set_engines(net, path=path)
     spun = spinning_net(nodes, net)
-    place(sail, spun)
+    sail.place(spun)
     unbalanced = imbalance(sail)
 
     shares = side_stiffness(nodes, triangles, young, poisson, DISK_THICKNESS)
@@ -666,16 +659,7 @@ def disk_limits(finest, cells):
 
 
 def checks(full):
-    """Checks of spinning bodies: coarse meshes in seconds; `full`, fine ones and the orders.
-
-    Parameters
-    ----------
-    full : bool
-
-    Returns
-    -------
-    list of Check
-    """
+    """Checks of spinning bodies: coarse meshes in seconds; `full`, fine ones and the orders."""
     found = tether_checks()
     for hub in HUBS:
         meshes = STRING_SEGMENTS if full else STRING_SEGMENTS[1:2]

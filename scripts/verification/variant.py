@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The paper's deployment with something changed or left out, and what time a step of it takes."""
+
+import time
+from dataclasses import dataclass, field, replace
+
+from membrane import scene
+from membrane.parameters import SailParameters
+from yade import wrapper as yade
+
+from . import deployment
+
+
+@dataclass(frozen=True)
+class Variant:
+    """What is changed, and what is left out.
+
+    Attributes
+    ----------
+    changes : dict
+        Of SailParameters.
+    duration : float
+        Of its run [s].
+    rests : bool
+        Whether the sail rests elsewhere so, and must be spun up anew.
+    ledger : bool
+        Keep the ledger.
+    contact : bool
+        Keep the collider.
+    """
+
+    changes: dict = field(default_factory=dict)
+    duration: float = SailParameters().duration
+    rests: bool = False
+    ledger: bool = True
+    contact: bool = True
+
+    def parameters(self):
+        """Its SailParameters."""
+        return replace(SailParameters(duration=self.duration), **self.changes)
+
+    def start(self):
+        """Positions (N, 3) [m] at the release; the fused path finds them for both."""
+        p = self.parameters()
+        rested = p if self.rests else SailParameters(refine=p.refine)
+        return deployment.equilibrium(replace(rested, path="fused"))
+
+    def begin(self, positions=None):
+        """Release the sail from `positions` (N, 3) [m], by default its `start`.
+
+        Returns
+        -------
+        mesh : SailMesh
+        sail : MembraneScene
+        """
+        start = self.start() if positions is None else positions
+        built = deployment.begin(self.parameters(), start, self.ledger)
+        if not self.contact:
+            drop_collider()
+        return built
+
+    def step_time(self, steps):
+        """Processor time of a step [s], soon after the release, on one thread."""
+        self.begin()
+        scene.advance(steps // 10)
+        begun = time.process_time()
+        scene.advance(steps)
+        return (time.process_time() - begun) / steps
+
+
+def drop_collider():
+    """Take the collider out of the engines: nothing touches the spool any more."""
+    omega = yade.Omega()
+    collider = yade.InsertionSortCollider
+    omega.engines = [engine for engine in omega.engines if not isinstance(engine, collider)]
