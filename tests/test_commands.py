@@ -6,10 +6,8 @@ import os
 import shutil
 import signal
 import subprocess
-import sys
 import unittest
 from functools import lru_cache
-from pathlib import Path
 
 from membrane.sail import LAST_GOOD
 from membrane.unfinished import UNFINISHED
