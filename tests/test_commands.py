@@ -64,7 +64,7 @@ def earlier():
     return folder
 
 
-class CommandTest(unittest.TestCase):
+class BadDayTest(unittest.TestCase):
     def ends(self, process, status, sentence):
         """It ends with a status and a sentence that stands alone on the last line."""
         _, said = process.communicate()
@@ -77,7 +77,7 @@ class CommandTest(unittest.TestCase):
         self.assertRegex(said.strip().splitlines()[-1], sentence)
 
 
-class TestCommandLines(CommandTest):
+class TestCommandLines(BadDayTest):
     def test_folder_below_a_file_is_refused(self):
         file = scratch() / "no_folder"
         file.write_text("")
@@ -98,7 +98,7 @@ class TestCommandLines(CommandTest):
         self.ends(start("deploy.py", "--beta", "-3"), 1, "^deploy: beta = -3.0 must be >= 0")
 
 
-class TestTables(CommandTest):
+class TestTables(BadDayTest):
     """Rows of a table of yade-batch."""
 
     def run_row(self, script, header, row):
@@ -122,7 +122,7 @@ class TestTables(CommandTest):
                 self.ends(self.run_row("deploy.py", "beta", value), 1, f"^deploy: .*{sentence}")
 
 
-class TestMissingPackages(CommandTest):
+class TestMissingPackages(BadDayTest):
     def without(self, *packages):
         """Environment in which Python packages cannot be imported."""
         shadows = scratch() / f"without_{'_'.join(packages)}"
@@ -152,7 +152,7 @@ class TestMissingPackages(CommandTest):
                 self.ends(process, 1, f"{script[:-3]}: .*apt-get install python3-{debian}")
 
 
-class TestEarlierResults(CommandTest):
+class TestEarlierResults(BadDayTest):
     def setUp(self):
         self.folder = scratch() / self.id().rpartition(".")[2]
         shutil.copytree(earlier(), self.folder)
@@ -213,7 +213,7 @@ class TestEarlierResults(CommandTest):
         self.check_on_disk("8m", "ro", "^deploy: .*Read-only file system")
 
 
-class TestControlC(CommandTest):
+class TestControlC(BadDayTest):
     def test_case_goes_on_later(self):
         folder = scratch() / "stopped_case"
         process = start("case.py", *SMALL, "--out", folder)
