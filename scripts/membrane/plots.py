@@ -172,7 +172,7 @@ def draw_scale_bar(axes, radius):
 
     It stands in the plane through the origin across the view, and holds for lengths there.
     """
-    widest = 0.6 * radius
+    widest = 0.7 * radius
     power = 10 ** np.floor(np.log10(widest))
     length = max(step * power for step in (1, 2, 5) if step * power <= widest)
     elevation, azimuth = np.radians([VIEW["elev"], VIEW["azim"]])

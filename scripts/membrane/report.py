@@ -22,7 +22,7 @@ TEMPLATE = Path(__file__).with_name("viewer.html")
 PLACE = "__RUN__"
 LARGEST = 40e6  # of the results in the page [bytes]; a larger run shows fewer of its shapes
 
-# What triangles may be coloured by: name of the series' field, label, unit, factor from SI, meaning.
+# What triangles may be coloured by: name of the field, label, unit, factor from SI, meaning.
 FIELDS = (
     ("side_strain", "side strain", "10⁻⁶", 1e6, "mean of a triangle's sides"),
     ("tension", "tension", "mN", 1e3, "mean of a triangle's sides"),

@@ -59,7 +59,8 @@ are missing; the sweep's command runs them, and them alone.</p>
 <h2>All cases</h2>
 <div class="wide"><table>
 <tr><th>case</th><th>outcome</th>
-{%- for name, unit, meaning in columns %}<th class="number" title="{{ meaning }}">{{ name | replace("_", " ") }}
+{%- for name, unit, meaning in columns %}
+<th class="number" title="{{ meaning }}">{{ name | replace("_", " ") }}
 {%- if unit != "-" %} <small>[{{ unit }}]</small>{% endif %}</th>{% endfor %}</tr>
 {% for case in cases %}
 <tr class="{{ case.state | replace("not begun", "missing") }}">
