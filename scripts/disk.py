@@ -73,6 +73,8 @@ def draw(errors, run, path):
         axes.set_box_aspect((1, 1, 0.5), zoom=1.3)
         axes.set_axis_off()
         figure.text(0.54 + 0.18 * k, 0.78, name, ha="center")
+    meaning = "(nodal diameters, nodal circles); heights are enlarged, at one instant"
+    figure.text(0.72, 0.1, meaning, ha="center", color="0.35", fontsize=9)
     figure.savefig(path, dpi=plots.DPI)
 
 

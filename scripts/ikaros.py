@@ -94,6 +94,8 @@ def draw(mesh, recorder, history, rigid, path):
         left, bottom = place % 3 / 3, 0.68 - 0.29 * (place // 3)
         axes = figure.add_axes((left, bottom, 1 / 3, 0.3), projection="3d")
         plots.draw_sail(axes, mesh, recorder.frames[i], 0.72 * mesh.outer_width)
+        if place == 0:
+            plots.draw_scale_bar(axes, 0.72 * mesh.outer_width)
         figure.text(left + 1 / 6, bottom + 0.28, f"{times[i]:.0f} s", ha="center", fontsize=11)
     axes = figure.add_axes((0.07, 0.075, 0.9, 0.3))
     axes.plot(history["time"], history["hub_spin"] / RPM, label="hub")

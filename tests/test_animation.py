@@ -11,7 +11,8 @@ from unittest import mock
 
 import numpy as np
 from membrane import animation
-from membrane.output import list_series
+from membrane.mesh import sail_mesh
+from membrane.output import VtkSeries, list_series, read_frame
 from membrane.parameters import SailParameters
 from support import CommandTest, scratch, short_run
 
@@ -53,6 +54,23 @@ class TestPictures(unittest.TestCase):
         self.assertGreater(film(self.first), 0.005)
         self.assertGreater(film(self.last), 3 * film(self.first))
         self.assertGreater(len(np.unique(self.last.reshape(-1, 3), axis=0)), 100)
+
+    def test_view_holds_a_sail_that_hangs_low_or_flies_high(self):
+        shapes = list_series(short_run() / "shapes" / "film.pvd")
+        positions, _ = read_frame(shapes[-1][1])
+        series = VtkSeries(scratch() / "far", "film", sail_mesh().triangles)
+        for time, lift in enumerate((-0.3, 0.3)):
+            series.write(time, positions + [0, 0, lift])
+        with animation.virtual_display():
+            far = list_series(scratch() / "far" / "film.pvd")
+            with contextlib.closing(animation.Stage(SailParameters(), far)) as stage:
+                pictures = [stage.picture(i) for i in range(2)]
+        for image in pictures:
+            self.assertGreater(film(image), 0.01)
+            for edge in (image[:2], image[-2:], image[:, :2], image[:, -2:]):
+                self.assertEqual(film(edge), 0)
+        low, high = pictures
+        self.assertEqual([film(low[:180]), film(high[180:])], [0, 0])
 
     def test_same_shape_gives_the_same_picture(self):
         np.testing.assert_array_equal(self.first, self.again)

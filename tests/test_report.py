@@ -299,12 +299,50 @@ class TestReportInBrowser(unittest.TestCase):
         body.send_keys(Keys.SPACE)
         self.await_(lambda: self.clock() > 0)
 
-    def test_colouring_by_each_field_shows_its_scale(self):
+    def test_keys_step_after_the_button_was_pressed_and_leave_choices_alone(self):
+        self.find("reset").click()
+        pressed = self.driver.switch_to.active_element
+        self.assertEqual(pressed.get_attribute("id"), "reset")
+        pressed.send_keys(Keys.ARROW_RIGHT, Keys.ARROW_RIGHT)
+        self.assertEqual(self.clock(), 0.01)
+        self.find("field").send_keys(Keys.ARROW_LEFT)
+        self.assertEqual(self.clock(), 0.01)
+
+    def test_keys_turn_and_zoom_without_a_change_of_time(self):
+        body = self.driver.find_element(By.TAG_NAME, "body")
+        before = self.picture()
+        body.send_keys(Keys.SHIFT, Keys.ARROW_LEFT * 4)
+        turned = self.picture()
+        self.assertGreater(self.changed(before, turned), 0.01)
+        body.send_keys(Keys.SHIFT, Keys.ARROW_RIGHT * 4)
+        self.assertLess(self.changed(before, self.picture()), 0.001)
+        body.send_keys(Keys.SHIFT, Keys.ARROW_UP * 40)  # to the top, and no farther
+        above = self.picture()
+        self.assertGreater(self.changed(before, above), 0.01)
+        body.send_keys(Keys.SHIFT, Keys.ARROW_UP)
+        self.assertLess(self.changed(above, self.picture()), 0.001)
+        width = self.find("scale-bar").rect["width"]
+        body.send_keys("+")
+        larger = self.picture()
+        self.assertGreater(self.golden(larger), 1.1 * self.golden(above))
+        self.assertNotEqual(self.find("scale-bar").rect["width"], width)
+        body.send_keys("-")
+        self.assertLess(self.changed(above, self.picture()), 0.001)
+        self.assertEqual(self.clock(), 0.0)
+
+    def test_page_tells_its_keys(self):
+        hint = self.driver.find_element(By.CLASS_NAME, "hint").text
+        for key in ("space", "\u2190", "\u2192", "shift", "+", "\u2212"):
+            self.assertIn(key, hint)
+
+    def test_colouring_by_each_field_shows_its_scale_and_meaning(self):
         self.find("slider").send_keys(Keys.END)
         seen = [self.picture()]
+        meanings = {label: meaning for _, label, _, _, meaning in report.FIELDS}
         for label in ("side strain", "tension", "buckled sides", "crease angle"):
             Select(self.find("field")).select_by_visible_text(label)
             self.assertIn(label, self.find("legend").text)
+            self.assertIn(meanings[label], self.find("legend").text)
             seen.append(self.picture())
             for other in seen[:-1]:
                 self.assertGreater(self.changed(other, seen[-1]), 0.05, label)

@@ -50,6 +50,7 @@ INK = (0.12, 0.15, 0.20)
 FOLD_LINE = (0.45, 0.28, 0.10)
 MARK = (0.92, 0.93, 0.95)
 PAPER, SKY = (0.96, 0.97, 0.98), (0.84, 0.88, 0.93)  # background, bottom and top
+MARGIN = 1.1  # of the view beyond what it shows
 TIP_RADIUS = 5e-3  # as drawn [m]; a tip mass has no size in the model
 
 
@@ -251,17 +252,33 @@ class Stage:
         self.renderer.AddLight(fill)
 
     def _aim(self):
-        """Look as in shapes.png, from so far that the sail stays in the picture at all times."""
+        """Look as in shapes.png, at what the sail and the spool reach in all the shapes."""
         elevation, azimuth = radians(VIEW["elev"]), radians(VIEW["azim"])
-        reach = self.parameters.outer_width / np.sqrt(2)
+        towards = np.array(
+            [cos(elevation) * cos(azimuth), cos(elevation) * sin(azimuth), sin(elevation)]
+        )
+        right = np.array([-sin(azimuth), cos(azimuth), 0])
+        screen = np.array([right, np.cross(towards, right)])  # right and up
+        low, high = self._spool_extent(elevation)
+        for _, path in self.shapes:
+            places = read_frame(path)[0] @ screen.T
+            low, high = np.minimum(low, places.min(axis=0)), np.maximum(high, places.max(axis=0))
+        half = (high - low) / 2 + TIP_RADIUS
+        reach = np.hypot(*half)
+        focus = (low + high) / 2 @ screen
         camera = self.renderer.GetActiveCamera()
         camera.ParallelProjectionOn()
-        towards = (cos(elevation) * cos(azimuth), cos(elevation) * sin(azimuth), sin(elevation))
-        camera.SetPosition(*(4 * reach * np.array(towards)))
-        camera.SetFocalPoint(0, 0, 0)
+        camera.SetPosition(*(focus + 4 * reach * towards))
+        camera.SetFocalPoint(*focus)
         camera.SetViewUp(0, 0, 1)
-        camera.SetParallelScale(0.72 * reach)
+        camera.SetParallelScale(MARGIN * max(half[1], half[0] * SIZE[1] / SIZE[0]))
         camera.SetClippingRange(0.5 * reach, 8 * reach)
+
+    def _spool_extent(self, elevation):
+        """Lower left and upper right (2,) [m] of the spool seen from an elevation [rad]."""
+        radius, height = self.parameters.spool_radius, self.parameters.spool_height
+        corner = np.array([radius, height / 2 * cos(elevation) + radius * sin(elevation)])
+        return -corner, corner
 
     def _add_scale_bar(self):
         """A bar of 1, 2 or 5 times a power of ten, at most a fifth of the picture wide."""
@@ -269,8 +286,9 @@ class Stage:
         widest = SIZE[0] / 5
         power = 10 ** np.floor(np.log10(widest / per_metre))
         length = max(step * power for step in (1, 2, 5) if step * power * per_metre <= widest)
-        left, low, wide = 0.03 * SIZE[0], 0.06 * SIZE[1], length * per_metre
-        corners = [(0, 9), (0, 0), (wide, 0), (wide, 9)]
+        left, low, wide, line = 0.03 * SIZE[0], 0.06 * SIZE[1], length * per_metre, 3
+        first, last = line / 2, wide - line / 2  # up to the outer edges of the lines
+        corners = [(first, 9), (first, 0), (last, 0), (last, 9)]
         points = vtkPoints()
         for x, y in corners:
             points.InsertNextPoint(left + x, low + y, 0)
@@ -282,7 +300,7 @@ class Stage:
         actor = vtkActor2D()
         actor.SetMapper(mapper)
         actor.GetProperty().SetColor(*INK)
-        actor.GetProperty().SetLineWidth(3)
+        actor.GetProperty().SetLineWidth(line)
         self.renderer.AddActor2D(actor)
         label = f"{length:g} m" if length >= 1 else f"{1e3 * length:g} mm"
         middle = ((left + wide / 2) / SIZE[0], (low + 14) / SIZE[1])

@@ -61,9 +61,12 @@ def plot_history(history, columns, path):
     for axes, (name, label) in zip(every, columns.items()):
         axes.plot(history["time"], history[name], color="C0")
         axes.set(ylabel=label)
+        if np.min(history[name]) >= 0:
+            axes.set(ylim=(0, None))
         axes.grid(alpha=0.3)
         axes.margins(x=0)
     every[-1].set(xlabel="time [s]")
+    figure.align_ylabels(every)
     figure.savefig(path, dpi=DPI)
 
 
@@ -121,6 +124,8 @@ def _plot_views(frames, times, path, draw):
         axes = figure.add_subplot(2, 3, i + 1, projection="3d")
         draw(axes, positions, radius)
         axes.set_title(f"{time:.3f} s", y=0.9, fontsize=11)
+        if i == 0:
+            draw_scale_bar(axes, radius)
     figure.savefig(path, dpi=DPI)
 
 
@@ -160,6 +165,27 @@ def draw_sail(axes, mesh, positions, radius, zoom=1.9):
     axes.add_collection3d(Line3DCollection(cables, colors="0.3", linewidths=0.6, clip_on=False))
     _draw_dots(axes, positions[mesh.tips])
     _set_view(axes, radius, zoom)
+
+
+def draw_scale_bar(axes, radius):
+    """Draw a bar of 1, 2 or 5 times a power of ten below a sail that reaches to `radius` [m].
+
+    It stands in the plane through the origin across the view, and holds for lengths there.
+    """
+    widest = 0.7 * radius
+    power = 10 ** np.floor(np.log10(widest))
+    length = max(step * power for step in (1, 2, 5) if step * power <= widest)
+    elevation, azimuth = np.radians([VIEW["elev"], VIEW["azim"]])
+    right = np.array([-np.sin(azimuth), np.cos(azimuth), 0])
+    up = np.array([0, 0, np.cos(elevation)])
+    up[:2] = -np.sin(elevation) * np.array([np.cos(azimuth), np.sin(azimuth)])
+    left, low, tick = -0.95 * radius, -0.62 * radius, 0.03 * radius
+    corners = [(left, low + tick), (left, low), (left + length, low), (left + length, low + tick)]
+    bar = np.array([x * right + y * up for x, y in corners])
+    axes.plot(*bar.T, color="0.2", linewidth=1, clip_on=False)
+    text = f"{length:g} m" if length >= 1 else f"{1e3 * length:g} mm"
+    middle = (left + length / 2) * right + (low + tick) * up
+    axes.text(*middle, text, ha="center", va="bottom", fontsize=8, color="0.2")
 
 
 def _draw_faces(axes, film, spool=()):

@@ -23,12 +23,12 @@ TEMPLATE = Path(__file__).with_name("viewer.html")
 PLACE = "__RUN__"
 LARGEST = 40e6  # of the results in the page [bytes]; a larger run shows fewer of its shapes
 
-# What triangles may be coloured by: name of the series' field, label, unit, factor from SI.
+# What triangles may be coloured by: name of the field, label, unit, factor from SI, meaning.
 FIELDS = (
-    ("side_strain", "side strain", "1e-6", 1e6),
-    ("tension", "tension", "mN", 1e3),
-    ("buckled", "buckled sides", "%", 100.0),
-    ("crease_angle", "crease angle", "deg", 180 / np.pi),
+    ("side_strain", "side strain", "10⁻⁶", 1e6, "mean of a triangle's sides"),
+    ("tension", "tension", "mN", 1e3, "mean of a triangle's sides"),
+    ("buckled", "buckled sides", "%", 100.0, "share of a triangle's sides"),
+    ("crease_angle", "crease angle", "deg", 180 / np.pi, "0 folded, 180 flat or no fold line"),
 )
 
 # Plots: label, unit, factor from SI, lines as (column of history.csv, label).
@@ -166,12 +166,13 @@ def _levels(values, low, high):
     return {"low": low, "high": high, "data": _pack(np.rint(255 * share), np.uint8)}
 
 
-def _field(data, name, label, unit, factor):
+def _field(data, name, label, unit, factor, meaning):
     """A field of the triangles over all shapes, in the unit shown."""
     values = factor * np.array([fields[name] for fields in data], dtype=float)
     low, high = _range(name, values)
     cut = bool(np.min(values) < low or np.max(values) > high)
-    return {"name": name, "label": label, "unit": unit, "cut": cut, **_levels(values, low, high)}
+    about = {"name": name, "label": label, "unit": unit, "meaning": meaning, "cut": cut}
+    return {**about, **_levels(values, low, high)}
 
 
 def _range(name, values):
@@ -182,7 +183,7 @@ def _range(name, values):
         return 0.0, 180.0
     # The film shortens a thousand times as much as it stretches; the scale is the taut film's.
     taut = values[values > 0]
-    high = float(f"{np.percentile(taut, 99):.1e}") if len(taut) else 1.0
+    high = float(f"{np.percentile(taut, 95):.1e}") if len(taut) else 1.0
     return (-high if name == "side_strain" else 0.0), high
 
 

@@ -20,9 +20,10 @@ figcaption { color: #555; font-size: 0.9rem; }
 table { border-collapse: collapse; font-size: 0.85rem; }
 th, td { padding: 0.25rem 0.6rem; border-bottom: 1px solid #ddd;
          text-align: left; vertical-align: top; }
+th { vertical-align: bottom; }
 th { background: #f4f4f2; font-weight: 600; } th small { font-weight: 400; color: #666; }
 td:first-child { white-space: nowrap; }
-td.number { text-align: right; font-variant-numeric: tabular-nums; }
+.number { text-align: right; font-variant-numeric: tabular-nums; }
 tr.diverged td { background: #fdf0e3; }
 tr.failed td, tr.killed td, tr.running td, tr.missing td { background: #fbe6e6; }
 .shapes { display: grid; grid-template-columns: repeat(auto-fill, minmax(24rem, 1fr)); gap: 1rem; }
@@ -44,7 +45,7 @@ tr.failed td, tr.killed td, tr.running td, tr.missing td { background: #fbe6e6; 
 clock, which runs through the spin-up; those in the table count from the release. All other cases
 are missing; the sweep's command runs them, and them alone.</p>
 <div class="wide"><table>
-<tr><th>case</th><th>outcome</th><th>at <small>[s]</small></th><th>because</th></tr>
+<tr><th>case</th><th>outcome</th><th class="number">at <small>[s]</small></th><th>because</th></tr>
 {% for status in others %}
 <tr class="{{ status.state | replace("not begun", "missing") }}">
 <td>{{ status.name }}</td><td>{{ status.state }}</td>
@@ -58,7 +59,8 @@ are missing; the sweep's command runs them, and them alone.</p>
 <h2>All cases</h2>
 <div class="wide"><table>
 <tr><th>case</th><th>outcome</th>
-{%- for name, unit, meaning in columns %}<th title="{{ meaning }}">{{ name | replace("_", " ") }}
+{%- for name, unit, meaning in columns %}
+<th class="number" title="{{ meaning }}">{{ name | replace("_", " ") }}
 {%- if unit != "-" %} <small>[{{ unit }}]</small>{% endif %}</th>{% endfor %}</tr>
 {% for case in cases %}
 <tr class="{{ case.state | replace("not begun", "missing") }}">
@@ -87,7 +89,7 @@ are missing; the sweep's command runs them, and them alone.</p>
 
 <h2>Parameters that all cases share</h2>
 <div class="wide"><table>
-<tr><th>parameter</th><th>value</th><th>unit</th><th>meaning</th><th>from</th></tr>
+<tr><th>parameter</th><th class="number">value</th><th>unit</th><th>meaning</th><th>from</th></tr>
 {% for name, value, unit, meaning, source in common %}
 <tr><td>{{ name }}</td><td class="number">{{ value }}</td><td>{{ unit }}</td>
 <td>{{ meaning }}</td><td>{{ source }}</td></tr>

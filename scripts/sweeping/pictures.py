@@ -67,8 +67,8 @@ def plot_curves(curves, ends, label, path):
     alphas = sorted({alpha for alpha, _ in curves})
     together = len(curves) <= TOGETHER and len(alphas) <= len(STYLES)
     groups = [alphas] if together else [[alpha] for alpha in alphas]
-    columns = min(3, len(groups))
-    rows = -(-len(groups) // columns)
+    rows = -(-len(groups) // 3)
+    columns = -(-len(groups) // rows)
     size = (8.5, 4.6) if together else (3.6 * columns + 1.4, 3.2 * rows)
     figure = Figure(figsize=size, layout="constrained")
     panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel()
@@ -94,6 +94,8 @@ def plot_curves(curves, ends, label, path):
             panel.tick_params(labelbottom=True)
         panel.grid(alpha=0.3)
         panel.margins(x=0.01)
+    if all(np.min(values) >= 0 for _, values in curves.values()):
+        panels[0].set_ylim(0, None)  # of all
     panels[columns - 1].legend(
         handles.values(),
         handles,
@@ -139,12 +141,18 @@ def plot_swing(maps, words, path):
     figure.savefig(path, dpi=DPI)
 
 
+def three_digits(value):
+    """A value with three digits, so that those of others can be compared with it."""
+    return f"{value:#.3g}".removesuffix(".")
+
+
 def _write(panel, image, row, column, value, word):
     """Write a cell's value into it, in a colour that can be read, or a word in its place."""
     if np.isfinite(value):
         colour = image.cmap(image.norm(value))
         bright = np.dot(colour[:3], (0.299, 0.587, 0.114)) > 0.5
-        shown = f"{value:#.3g}".removesuffix(".")
-        panel.text(column, row, shown, ha="center", va="center", color="k" if bright else "w")
+        panel.text(
+            column, row, three_digits(value), ha="center", va="center", color="k" if bright else "w"
+        )
     else:
         panel.text(column, row, word, ha="center", va="center", color="0.35", fontsize=8)

@@ -10,7 +10,7 @@ from membrane.parameters import SailParameters
 
 from .grid import AXES
 from .page import render
-from .pictures import plot_curves, plot_swing
+from .pictures import plot_curves, plot_swing, three_digits
 from .results import MEASURES, read, varied, write_table
 
 TABLE, PAGE = "cases.csv", "report.html"
@@ -20,6 +20,7 @@ CURVES = {
     "paper's Figures 8 and 9; positive where the tips lead.",
 }
 SWING = "swing.png"
+NOT_SEEN = "not seen"  # where a run ends before what is asked for
 
 
 def report(folder):
@@ -79,8 +80,8 @@ def draw(results, folder):
     return {
         **drawn,
         SWING: f"The swing over alpha_c and beta. {meanings.capitalize()}. "
-        "Runs of one case that start a nanometre apart differ, too: `scripts/run.sh verify` says "
-        "by how much.",
+        f"{NOT_SEEN.capitalize()}: the run ends before. Runs of one case that start a nanometre "
+        "apart differ, too: scripts/run.sh verify says by how much.",
     }
 
 
@@ -88,7 +89,7 @@ def word(status):
     """What stands in a heat map where there is no value."""
     if status.state == DIVERGED:
         return "diverged\n" + ("in spin-up" if status.time is None else f"at {status.time:.3g} s")
-    return "not seen" if status.state == COMPLETE else status.state
+    return NOT_SEEN if status.state == COMPLETE else status.state
 
 
 def content(results, drawn, folder):
@@ -128,15 +129,20 @@ def _row(result, parameters, folder):
         "state": status.state,
         "place": str(status.folder.relative_to(folder)) if status.is_finished else "",
         "shapes": str(shapes.relative_to(folder)) if shapes.exists() else "",
-        "values": [_short(v) for v in values] + [_short(v, 4) for v in result.measures.values()],
+        "values": [_short(v) for v in values] + [_measure(v) for v in result.measures.values()],
     }
 
 
-def _short(value, digits=7):
-    """A value as the page shows it; what there is not is ""."""
+def _short(value):
+    """A parameter as the page shows it; what there is not is ""."""
     if value is None:
         return ""
-    return f"{value:.{digits}g}" if isinstance(value, float) else str(value)
+    return f"{value:.7g}" if isinstance(value, float) else str(value)
+
+
+def _measure(value):
+    """A measure with as many digits as all others, as in the heat maps."""
+    return "" if value is None else three_digits(value)
 
 
 def _versions(results):

@@ -81,6 +81,7 @@ function showField(field) {
   legend.querySelector(".name").textContent = `${field.label} [${field.unit}]`;
   legend.querySelector(".low").textContent = end(below, field.low);
   legend.querySelector(".high").textContent = end(above, field.high);
+  legend.querySelector(".meaning").textContent = field.meaning;
   drawRamp(legend.querySelector(".ramp"), field);
 }
 
@@ -123,12 +124,23 @@ function setUpControls() {
   window.addEventListener("keydown", onKey);
 }
 
+const TURN = Math.PI / 36; // by a key
+const ZOOM = 1.1;
 const KEYS = {
   " ": () => player.toggle(),
   ArrowLeft: () => step(-1),
   ArrowRight: () => step(1),
   Home: () => step(-Infinity),
   End: () => step(Infinity),
+  "+": () => stage?.move(0, 0, 1 / ZOOM),
+  "-": () => stage?.move(0, 0, ZOOM),
+};
+const KEYS_WITH_SHIFT = {
+  ArrowLeft: () => stage?.move(-TURN, 0, 1),
+  ArrowRight: () => stage?.move(TURN, 0, 1),
+  ArrowUp: () => stage?.move(0, TURN, 1),
+  ArrowDown: () => stage?.move(0, -TURN, 1),
+  "+": KEYS["+"], // needs it on many keyboards
 };
 
 function step(frames) {
@@ -138,11 +150,14 @@ function step(frames) {
 
 /** Keys act unless they belong to the control that has the focus. */
 function onKey(event) {
-  const own = event.target.matches("select, button, input[type=checkbox]");
-  const slides = event.target.matches("input[type=range]") && event.key !== " ";
-  if (own || slides || event.altKey || event.ctrlKey || event.metaKey || !KEYS[event.key]) return;
+  const act = (event.shiftKey ? KEYS_WITH_SHIFT : KEYS)[event.key];
+  if (!act || event.altKey || event.ctrlKey || event.metaKey) return;
+  const { target, key, shiftKey } = event;
+  const pressed = target.matches("button, input[type=checkbox]") && key === " ";
+  const slides = target.matches("input[type=range]") && key !== " " && !shiftKey;
+  if (pressed || slides || target.matches("select")) return;
   event.preventDefault();
-  KEYS[event.key]();
+  act();
 }
 
 function setUpKey() {

@@ -13,6 +13,7 @@ import {
   DynamicDrawUsage,
   FrontSide,
   Group,
+  MathUtils,
   Mesh,
   MeshStandardMaterial,
   PerspectiveCamera,
@@ -30,6 +31,7 @@ import { BOTTOM, MARK, MOUNTAIN, ramp, SPOOL, TETHER, TIP, TIP_ON_DARK, TOP, VAL
 const ELEVATION = (32 * Math.PI) / 180; // of the first view, as in shapes.png
 const AZIMUTH = (-65 * Math.PI) / 180;
 const FIELD_OF_VIEW = 28; // degrees, of the shorter side of the picture
+const { clamp } = MathUtils;
 const TIP_RADIUS = 5e-3; // as drawn [m]; a tip mass has no size in the model
 
 /** Lines between pairs of nodes, a few pixels wide. */
@@ -189,6 +191,22 @@ export class Stage {
       distance * Math.sin(ELEVATION),
     );
     this.controls.target.set(0, 0, 0);
+    this.controls.update();
+    this.draw();
+  }
+
+  /** Moves the camera about the axis and up by angles, and to `share` of its distance. */
+  move(about, up, share) {
+    const { minDistance, maxDistance, target } = this.controls;
+    const offset = this.camera.position.clone().sub(target);
+    const distance = offset.length();
+    const azimuth = Math.atan2(offset.y, offset.x) + about;
+    // Not quite to the poles, where there is no azimuth.
+    const elevation = clamp(Math.asin(offset.z / distance) + up, -1.57, 1.57);
+    const across = Math.cos(elevation);
+    offset.set(across * Math.cos(azimuth), across * Math.sin(azimuth), Math.sin(elevation));
+    const farther = clamp(share * distance, minDistance, maxDistance);
+    this.camera.position.copy(target).addScaledVector(offset, farther);
     this.controls.update();
     this.draw();
   }
