@@ -129,42 +129,17 @@ def _plot_views(frames, times, path, draw):
     figure.savefig(path, dpi=DPI)
 
 
-def plot_fold(mesh, positions, path):
-    """The folded state from above (whole, and the arms' beginning) and in perspective.
-
-    Parameters
-    ----------
-    mesh : SailMesh
-        The sail.
-    positions : (N, 3) float
-        Positions [m].
-    path : path
-        Picture to write.
-    """
-    figure = Figure(figsize=(15, 5.2), layout="constrained")
-    whole, middle = figure.add_subplot(1, 3, 1), figure.add_subplot(1, 3, 2)
-    for axes in (whole, middle):
-        _draw_rows(axes, mesh, positions)
-    reach = 1.1e3 * np.max(np.abs(positions[mesh.inner_corners, :2]))
-    middle.set(xlim=(0, reach), ylim=(0, reach), title="beginning of an arm [mm]")
-    whole.set_title("rows from above [mm], dark = inner edge")
-    axes = figure.add_subplot(1, 3, 3, projection="3d")
-    radius = np.max(np.hypot(positions[:, 0], positions[:, 1]))
-    draw_sail(axes, mesh, positions, radius, zoom=1.5)
-    figure.savefig(path, dpi=DPI)
-
-
-def draw_sail(axes, mesh, positions, radius, zoom=1.9):
+def draw_sail(axes, mesh, positions, radius):
     """Draw the film, shaded, with tips, tethers and spool on 3-D axes reaching to `radius` [m].
 
-    `zoom` [-] enlarges the drawing within its part of the figure.
+    The spool is as tall as the strips: the mesh does not tell its height.
     """
     spool = _spool_faces(mesh.spool_radius, mesh.strip_width)
     _draw_faces(axes, positions[mesh.triangles], spool)
     cables = positions[mesh.cables]
     axes.add_collection3d(Line3DCollection(cables, colors="0.3", linewidths=0.6, clip_on=False))
     _draw_dots(axes, positions[mesh.tips])
-    _set_view(axes, radius, zoom)
+    _set_view(axes, radius)
 
 
 def draw_scale_bar(axes, radius):
@@ -227,20 +202,3 @@ def _spool_faces(radius, height, facets=24):
     foot, head = ring - [0, 0, height / 2], ring + [0, 0, height / 2]
     sides = [np.array([foot[i], foot[i + 1], head[i + 1], head[i]]) for i in range(facets)]
     return sides + [head[:-1]]
-
-
-def _draw_rows(axes, mesh, positions):
-    """Draw the rows of nodes on the fold lines and edges from above [mm], dark = inner edge."""
-    plan = 1e3 * positions[:, :2]
-    lines = mesh.rows[:: mesh.refine]
-    for j, ids in enumerate(lines):
-        colour = [0.1, 0.15, 0.3] + np.array([0.85, 0.5, 0.0]) * j / len(lines)
-        for petal in ids:
-            axes.plot(*plan[petal].T, color=colour, linewidth=0.8, marker=".", markersize=2.5)
-    axes.plot(*plan[mesh.tips].T, "k.", markersize=8)
-    for chain in mesh.cables.reshape(4, -1, 2):
-        axes.plot(*plan[np.append(chain[:, 0], chain[-1, 1])].T, color="0.5", linewidth=0.8)
-    angle = np.linspace(0, 2 * np.pi, 97)
-    spool = 1e3 * mesh.spool_radius
-    axes.plot(spool * np.cos(angle), spool * np.sin(angle), color="0.5")
-    axes.set_aspect("equal")
