@@ -12,7 +12,7 @@ from pathlib import Path
 from membrane.batch import batch_row
 from membrane.case_folder import COMPLETE
 from membrane.commands import plain_errors
-from membrane.parameters import add_arguments, from_arguments
+from membrane.parameters import from_arguments, parse
 
 with plain_errors("case"):
     from membrane.case import run_case
@@ -32,14 +32,13 @@ def command_line():
         metavar="SECONDS",
         help="wall time between two checkpoints [s], >= 0 (default 60)",
     )
-    add_arguments(parser)
-    return parser.parse_args()
+    return parse(parser)
 
 
 def main():
     """Run the case; sys.exit with one sentence if that cannot be."""
-    arguments = command_line()
     with plain_errors("case", "stopped by Ctrl-C; run again it goes on"):
+        arguments = command_line()
         overrides, own, _ = batch_row(
             out=arguments.out,
             no_pictures=arguments.no_pictures,

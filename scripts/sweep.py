@@ -19,8 +19,8 @@ from membrane.parameters import (
     TABLE_2_CASES,
     TABLE_2_DURATION,
     SailParameters,
-    add_arguments,
     from_arguments,
+    parse,
 )
 
 with plain_errors("sweep"):
@@ -52,11 +52,10 @@ def command_line():
         help="wall time between two checkpoints of a case (default 60)",
     )
     run.add_argument("--no-pictures", action="store_true", help="draw no pictures of single cases")
-    add_arguments(run, several=TABLE_2_CASES)
-    run.set_defaults(duration=TABLE_2_DURATION)
     only = commands.add_parser("report", help="report what is there")
     only.add_argument("folder", type=Path, help="folder of the sweep, or of the cases")
-    return parser.parse_args()
+    defaults = {"duration": TABLE_2_DURATION}
+    return parse(run, several=TABLE_2_CASES, defaults=defaults, root=parser)
 
 
 def main():

@@ -4,11 +4,13 @@
 import argparse
 import json
 import subprocess
+import sys
 import unittest
 from dataclasses import fields
 from math import pi
+from unittest import mock
 
-from membrane.parameters import SailParameters, add_arguments, describe, from_arguments
+from membrane.parameters import SailParameters, add_arguments, describe, from_arguments, parse
 from support import ROOT, long, scratch, yade_environment
 
 # Tables 1 and 2 of the paper, and the defaults that MODEL chose among Table 2's.
@@ -60,6 +62,22 @@ class TestParameters(unittest.TestCase):
                 words = [flag, repr(expected)]
             found = from_arguments(self.parse(*words)).as_dict()
             self.assertEqual(found, {**SailParameters().as_dict(), item.name: expected})
+
+    def test_command_line_wins_over_a_file_and_that_over_defaults(self):
+        file = scratch() / "some.json"
+        file.write_text('{"parameters": {"beta": 1.0, "zeta": 0.1, "duration": 3.0}}')
+        root = argparse.ArgumentParser()
+        command = root.add_subparsers().add_parser("run")
+        words = ["prog", "run", "--parameters", str(file), "--zeta", "0.2"]
+        with mock.patch.object(sys, "argv", words):
+            found = parse(
+                command,
+                several={"beta": (3.0, 30.0)},
+                defaults={"duration": 2.0, "omega": 5.0},
+                root=root,
+            )
+        self.assertEqual((found.beta, found.zeta), ([3.0, 30.0], 0.2))
+        self.assertEqual((found.duration, found.omega, found.gamma), (3.0, 5.0, 100.0))
 
     def test_table_overrides_the_command_line(self):
         found = from_arguments(self.parse("--beta", "3"), {"beta": 0.0, "zeta": 0.1})

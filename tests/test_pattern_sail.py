@@ -65,6 +65,12 @@ class TestPlace(unittest.TestCase):
         sail = pattern_sail.place(sheet, PatternParameters(hub_radius=1e-3))
         self.assertEqual(sail.tips.tolist(), sheet.groups["tips"].tolist())
         np.testing.assert_allclose(sail.nodes[sail.hub], 0, atol=1e-12)
+        alone = pattern_sail.place(sheet, PatternParameters())
+        self.assertEqual(alone.hub.tolist(), sheet.groups["hub"].tolist())
+        flying = pattern_sail.place(
+            pattern_sail.read_sheet(MIURA, PatternParameters()), PatternParameters()
+        )
+        self.assertEqual(len(flying.hub), 0)
         with self.assertRaisesRegex(ValueError, "no node is that near"):
             pattern_sail.place(
                 pattern_sail.read_sheet(MIURA, PatternParameters()),

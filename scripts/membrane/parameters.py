@@ -183,18 +183,40 @@ def add_arguments(parser, kind=SailParameters, several=None):
                 _add_argument(group, item, (several or {}).get(item.name))
 
 
-def parse(parser, kind=SailParameters):
+def parse(parser, kind=SailParameters, *, several=None, defaults=None, root=None):
     """Arguments of an argparse parser with options for all parameters and one for a file of them.
 
-    What is given on the command line wins over the file. Raises BadFile or OSError.
+    What is given on the command line wins over the file, which wins over `defaults`, a dict.
+
+    Parameters
+    ----------
+    parser : ArgumentParser
+        Gets the options.
+    kind : class
+        Of the parameters.
+    several : dict, optional
+        See add_arguments; the file's values of these parameters do not count.
+    defaults : dict, optional
+        In place of those of `kind`.
+    root : ArgumentParser, optional
+        Parses, if `parser` is one of its commands.
+
+    Raises
+    ------
+    BadFile or OSError
     """
-    add_arguments(parser, kind)
+    add_arguments(parser, kind, several)
     text = "take parameters that are not given from this JSON file, as summary.json of a run"
     parser.add_argument("--parameters", metavar="FILE", help=text)
-    file = parser.parse_args().parameters
+    parser.set_defaults(**(defaults or {}))
+    root = root or parser
+    arguments = root.parse_args()
+    file = getattr(arguments, "parameters", None)
     if file:
-        parser.set_defaults(**asdict(read_parameters(file, kind)))
-    return parser.parse_args()
+        values = read_values(file, kind)
+        parser.set_defaults(**{n: v for n, v in values.items() if n not in (several or {})})
+        arguments = root.parse_args()
+    return arguments
 
 
 def _add_argument(group, item, several):
@@ -225,14 +247,13 @@ def from_arguments(arguments, overrides=None, kind=SailParameters):
     return kind(**values)
 
 
-def read_parameters(path, kind=SailParameters):
-    """Parameters from a JSON file: an object of values by name, or a summary.json of a run.
+def read_values(path, kind=SailParameters):
+    """Values of parameters by name from a JSON file: such an object, or a summary.json of a run.
 
     Raises
     ------
     BadFile
-        If a name is unknown or a value out of range; parameters that are not named have their
-        defaults.
+        If a name is unknown or a value out of range.
     """
     values = read_object(path)
     values = values.get("parameters", values)
@@ -243,6 +264,12 @@ def read_parameters(path, kind=SailParameters):
         if name not in known:
             raise BadFile(path, shown(name)[1:-1], "is no parameter")
     try:
-        return kind(**values)
+        complete = kind(**values)
     except ValueError as error:
         raise BadFile(path, "", str(error)) from None
+    return {name: getattr(complete, name) for name in values}
+
+
+def read_parameters(path, kind=SailParameters):
+    """Parameters from a JSON file, see read_values; those it does not name have their defaults."""
+    return kind(**read_values(path, kind))

@@ -59,7 +59,11 @@ class PatternParameters:
 
     omega: float = parameter(6 * pi, "rad/s", SPIN, "spin rate at the start")
     hub_radius: float = parameter(
-        0.0, "m", SPIN, "nodes this near the axis turn steadily; 0: the sail flies free"
+        0.0,
+        "m",
+        SPIN,
+        "nodes this near the axis turn steadily, as those of a mesh's group 'hub' do; "
+        "0, and no such group: the sail flies free",
     )
     tip_mass: float = parameter(0.36e-3, "kg", SPIN, "mass at each tip")
     tips: str = parameter(
@@ -165,16 +169,24 @@ def place(sheet, p):
     nodes = sheet.nodes - np.average(sheet.nodes, axis=0, weights=mass)
     folded = sheet.start is not None and not p.flat
     start = nearest_pose(sheet.start, nodes, mass) if folded else nodes
-    hub = np.flatnonzero(np.hypot(nodes[:, 0], nodes[:, 1]) <= p.hub_radius)
-    if p.hub_radius > 0 and not len(hub):
-        nearest = np.min(np.hypot(nodes[:, 0], nodes[:, 1]))
-        raise ValueError(
-            f"hub_radius = {p.hub_radius} m: no node is that near the axis; the nearest is at "
-            f"{nearest:.4g} m"
-        )
+    hub = _hub(sheet, nodes, p.hub_radius)
     return PatternSail(
         nodes, sheet.triangles, sheet.creases, sheet.crease_signs, start, tips, hub, sheet.lines()
     )
+
+
+def _hub(sheet, nodes, radius):
+    """Nodes (n,) that are driven, of `nodes` (N, 3) [m] placed on the axis."""
+    named = np.asarray((sheet.groups or {}).get("hub", ()), dtype=int)
+    if radius == 0:
+        return named
+    away = np.hypot(nodes[:, 0], nodes[:, 1])
+    if radius < away.min():
+        raise ValueError(
+            f"hub_radius = {radius} m: no node is that near the axis; the nearest is at "
+            f"{away.min():.4g} m"
+        )
+    return np.union1d(named, np.flatnonzero(away <= radius))
 
 
 def _tips(sheet, choice):
@@ -362,7 +374,9 @@ def draw(sail, recorder, history, folder, shown=None):
     times = np.array(recorder.frame_times)
     if shown is None:
         areas = [area_vectors(x, sail.triangles)[:, 2].sum() for x in recorder.frames]
-        picks = instants(times, int(np.argmax(areas)))
+        widest = int(np.argmax(areas))
+        # A sheet that starts flat is widest at the start: then all of the run is shown.
+        picks = instants(times, widest if areas[widest] > 1.01 * areas[0] else len(times) - 1)
     else:
         picks = nearest(times, shown)
     frames = [recorder.frames[i] for i in picks]

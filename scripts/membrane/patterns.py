@@ -151,7 +151,7 @@ def _metres(frame, unit):
     if frame.metre is None:
         raise ValueError(
             f"the pattern's frame_unit is {frame.unit!r}, which has no physical length: say how "
-            "many metres it is"
+            "many metres it is (unit; on the command line --unit)"
         )
     return frame.metre
 

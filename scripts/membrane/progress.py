@@ -25,7 +25,7 @@ class Progress:
     def update(self, done, note=""):
         """Tell that simulated time `done` [s] is reached."""
         wall = max(time.monotonic() - self.start, 1e-9)
-        left = (self.total - done) * wall / done if done > 0 else 0.0
+        left = max(0.0, self.total - done) * wall / done if done > 0 else 0.0
         text = (
             f"t = {done:.3f} of {self.total:g} s  {done / wall:.3g} simulated s per s  "
             f"{left:.0f} s left{note}"

@@ -115,8 +115,14 @@ def content(results, drawn, folder):
         ],
         "versions": _versions(results),
         "table": TABLE,
-        "axes": AXES,
+        "axes": [name for name in parameters if _varies(results, name)] or AXES,
     }
+
+
+def _varies(results, name):
+    """Whether a parameter is not the same in all cases whose parameters are known."""
+    known = (result.status.parameters for result in results)
+    return len({repr(values[name]) for values in known if name in values}) > 1
 
 
 def _row(result, parameters, folder):
