@@ -51,8 +51,8 @@ END
 }
 
 # Debian packages to build and run, to mesh other sails, to verify, to compare the speed with, and to format.
-# ParaView brings VTK's Python modules along, and cannot be installed beside the others.
-run_packages=(yade python3-numpy python3-matplotlib "python3-vtk9|python3-paraview"
+# Not the VTK of python3-paraview, which excludes python3-vtk9: it and YADE's crash in one process.
+run_packages=(yade python3-numpy python3-matplotlib python3-vtk9
     g++ cmake make libboost-dev libeigen3-dev python3-dev libglut-dev libgtest-dev)
 sail_packages=(python3-gmsh python3-meshio)
 test_packages=(xvfb xauth) # a display for the tests of drawing
@@ -97,15 +97,14 @@ find_root() {
     fi
 }
 
-# need PACKAGE...: installs those that are missing; of alternatives a|b the first, unless one is there.
+# need PACKAGE...: installs those that are missing and removes none.
 need() {
     command -v dpkg-query >/dev/null || die "this is not Debian 12: there is no dpkg-query"
     local status package log
-    local -a names missing=() as_root=()
-    mapfile -t names < <(printf '%s\n' "$@" | tr '|' '\n')
-    status=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "${names[@]}" 2>/dev/null || true)
+    local -a missing=() as_root=()
+    status=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "$@" 2>/dev/null || true)
     for package in "$@"; do
-        grep -qxE "installed (${package//+/\\+})" <<<"$status" || missing+=("${package%%|*}")
+        grep -qxF "installed $package" <<<"$status" || missing+=("$package")
     done
     ((${#missing[@]})) || return 0
 
