@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from membrane.commands import plain_errors
+from membrane.commands import count, folder, plain_errors
 from membrane.files import replace_text
 from membrane.parameters import SailParameters
 from membrane.progress import announcer
@@ -231,16 +231,18 @@ def draw(points, path):
 def main():
     """Run the grid, write table and picture."""
     parser = argparse.ArgumentParser(prog="chart", description=__doc__.splitlines()[0])
-    parser.add_argument("--rounds", type=int, default=3, help="rounds of the timing")
-    parser.add_argument("--steps", type=int, default=4000, help="steps of each, at refine = 1")
+    parser.add_argument("--rounds", type=count, default=3, help="rounds of the timing")
+    parser.add_argument("--steps", type=count, default=4000, help="steps of each, at refine = 1")
     parser.add_argument("--quick", action="store_true", help="a small grid")
-    parser.add_argument("--out", type=Path, default=REFERENCE, help="folder for chart.csv and .png")
+    parser.add_argument(
+        "--out", type=folder, default=REFERENCE, help="folder for chart.csv and .png"
+    )
     arguments = parser.parse_args()
+    arguments.out.mkdir(parents=True, exist_ok=True)
     tell = announcer("chart")
     points = deployments(grid(arguments.quick), arguments.rounds, arguments.steps, tell)
     points += disks(arguments.quick, tell)
     mark_pareto(points)
-    arguments.out.mkdir(parents=True, exist_ok=True)
     table = arguments.out / "chart.csv"
     replace_text(table, HEADER + "\n".join([COLUMNS, *(p.line() for p in points)]) + "\n")
     draw(points, arguments.out / "chart.png")

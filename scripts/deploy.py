@@ -10,7 +10,7 @@ import contextlib
 from pathlib import Path
 
 from membrane.batch import batch_row
-from membrane.commands import plain_errors
+from membrane.commands import folder, plain_errors
 from membrane.parameters import from_arguments, parse
 from membrane.unfinished import new_results
 from yade import utils
@@ -25,7 +25,10 @@ def command_line():
         prog="deploy", description="Fold, spin up and deploy the paper's solar sail."
     )
     parser.add_argument(
-        "--out", type=Path, metavar="DIR", help="output folder (default: out, in a batch out/CASE)"
+        "--out",
+        type=folder,
+        metavar="DIR",
+        help="output folder (default: out, in a batch out/CASE)",
     )
     parser.add_argument("--no-pictures", action="store_true", help="draw no pictures")
     parser.add_argument("--no-report", action="store_true", help="write no report.html")
@@ -43,11 +46,11 @@ def main():
     with plain_errors("deploy"):
         arguments = command_line()
         overrides, _, case = batch_row()
-        folder = arguments.out or (Path("out") / case.replace("/", "_") if case else Path("out"))
+        out = arguments.out or (Path("out") / case.replace("/", "_") if case else Path("out"))
         parameters = from_arguments(arguments, overrides)
         look = window.Watch() if arguments.watch else sail.look_away
         films = []
-        with new_results(folder) as part:
+        with new_results(out) as part:
             summary = sail.deploy(
                 parameters,
                 part,
@@ -68,11 +71,11 @@ def main():
     )
     print("Look at:")
     shown = [] if arguments.no_pictures else ["shapes.png", "deployment.png"]
-    if not arguments.no_report and (folder / report.PAGE).exists():
+    if not arguments.no_report and (out / report.PAGE).exists():
         shown.append(report.PAGE)
     shown += [film.name for film in films]
     for name in [*shown, "history.csv", "summary.json", "shapes/film.pvd", "shapes/sides.pvd"]:
-        print(f"  {folder / name}")
+        print(f"  {out / name}")
     if arguments.watch:
         print("Close the window to end.")
         with contextlib.suppress(KeyboardInterrupt):  # Ctrl-C ends it, too

@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from membrane.commands import plain_errors
+from membrane.commands import folder, plain_errors
 from yade.wrapper import Omega
 
 sys.path.append(str(Path(sys.argv[0]).resolve().parent))
@@ -87,17 +87,21 @@ def main():
     """Vibrate the disks, tell the errors and draw."""
     parser = argparse.ArgumentParser(prog="disk", description=__doc__.splitlines()[0])
     parser.add_argument(
-        "--out", type=Path, default=Path("."), metavar="DIR", help="folder of disk.png (default .)"
+        "--out",
+        type=folder,
+        default=Path("."),
+        metavar="DIR",
+        help="folder of disk.png (default .)",
     )
-    folder = parser.parse_args().out
-    folder.mkdir(parents=True, exist_ok=True)
+    out = parser.parse_args().out
+    out.mkdir(parents=True, exist_ok=True)
     runs = [vibrate(cells) for cells in CELLS]
     errors = np.abs([run[0] for run in runs])
     for name, error in zip(MODES, errors.T):
         found = f"error {100 * error[-1]:.3f} % on {CELLS[-1]} cells, order {order(error):.2f}"
         print(f"{name}: {found}")
-    draw(errors, runs[-1], folder / "disk.png")
-    print(f"Look at {folder / 'disk.png'}")
+    draw(errors, runs[-1], out / "disk.png")
+    print(f"Look at {out / 'disk.png'}")
 
 
 with plain_errors("disk"):

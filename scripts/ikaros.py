@@ -21,7 +21,7 @@ from math import pi
 from pathlib import Path
 
 import numpy as np
-from membrane.commands import plain_errors
+from membrane.commands import folder, plain_errors
 from membrane.files import write_json
 from membrane.measures import energy_errors
 from membrane.parameters import SailParameters
@@ -71,7 +71,7 @@ def command_line():
     parser = argparse.ArgumentParser(
         prog="ikaros", description="Stage 2 of the deployment of IKAROS, on a free hub."
     )
-    parser.add_argument("--out", type=Path, default=Path("out_ikaros"), metavar="DIR")
+    parser.add_argument("--out", type=folder, default=Path("out_ikaros"), metavar="DIR")
     parser.add_argument(
         "--spin",
         type=float,

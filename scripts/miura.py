@@ -9,7 +9,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from membrane.commands import plain_errors
+from membrane.commands import folder, plain_errors
 from membrane.unfinished import new_results
 
 with plain_errors("miura"):
@@ -37,7 +37,7 @@ def main():
     """Unfold the sheet; sys.exit with one sentence if that cannot be."""
     parser = argparse.ArgumentParser(prog="miura", description=__doc__.splitlines()[0])
     parser.add_argument(
-        "--out", type=Path, default=Path("out"), metavar="DIR", help="output folder"
+        "--out", type=folder, default=Path("out"), metavar="DIR", help="output folder"
     )
     parser.add_argument("--duration", type=float, default=1.0, metavar="S", help="default 1 s")
     arguments = parser.parse_args()

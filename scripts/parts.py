@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from membrane.commands import plain_errors
+from membrane.commands import count, plain_errors
 from membrane.files import replace_text
 from membrane.parameters import SailParameters
 from membrane.progress import announcer
@@ -115,10 +115,12 @@ def verdict(name, change, spread, cost):
 def main():
     """Measure, write the table, print the advice."""
     parser = argparse.ArgumentParser(prog="parts", description=__doc__.splitlines()[0])
-    parser.add_argument("--rounds", type=int, default=3, help="pairs of runs that time a part")
-    parser.add_argument("--steps", type=int, default=1000, help="steps of each")
-    parser.add_argument("--members", type=int, default=3, help="runs that give the spread")
+    parser.add_argument("--rounds", type=count, default=3, help="pairs of runs that time a part")
+    parser.add_argument("--steps", type=count, default=1000, help="steps of each")
+    parser.add_argument("--members", type=count, default=3, help="runs that give the spread")
     arguments = parser.parse_args()
+    if arguments.members < 2:
+        parser.error(f"--members {arguments.members}: must be at least 2")
     tell = announcer("parts")
     tell("the complete model")
     rest = COMPLETE.start()

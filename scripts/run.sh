@@ -137,7 +137,11 @@ compile() {
     local yade
     yade=$(dpkg-query -W -f='${Version}' yade)
     [[ $yade == "$yade_version"-* ]] || die "this is built for YADE $yade_version, that of Debian 12, but here is $yade"
-    { mkdir -p "$build" && [[ -w $build ]]; } || die "cannot write to $build"
+    if ! { mkdir -p "$build" && [[ -w $build ]]; } 2>/dev/null; then
+        [[ -e $build/python/membrane/_membrane.so ]] || die "cannot write to $build"
+        say "cannot write to $build: taking what is built there"
+        return
+    fi
     exec 9>"$build/.lock"
     flock 9 # one build at a time
     if ! configure_and_make 2>&1 9>&- | tee "$build/build.log" |
@@ -196,7 +200,8 @@ run_yade() {
         esac
         shift || true
     done
-    [[ $threads =~ ^[1-9][0-9]*$ ]] || die "-j takes the number of threads, at least 1, not '$threads'"
+    [[ $threads =~ ^[1-9][0-9]{0,4}$ ]] || die "-j takes the number of threads, at least 1, not '$threads'"
+    ((threads <= 4 * $(nproc))) || die "-j $threads: too many threads for the $(nproc) cores of this machine"
     set_environment
     exec yade "${no_display[@]}" -x -j "$threads" "$script" "${options[@]}"
 }
@@ -264,6 +269,8 @@ format() {
     esac
 }
 
+take_nothing() { (($# == 0)) || die "$command: unknown option '$1'"; }
+
 command=${1-help}
 shift || true
 case $command in
@@ -313,6 +320,7 @@ case | stability | parts | chart)
     run_yade "$root/scripts/$command.py" "$@"
     ;;
 viewer)
+    take_nothing "$@"
     mkdir -p "$build"
     bundle_viewer
     ;;
@@ -343,8 +351,14 @@ calibrate)
     set_environment
     exec python3 "$root/scripts/calibrate.py" "$@"
     ;;
-sanitize) sanitize ;;
-build) compile ;;
+sanitize)
+    take_nothing "$@"
+    sanitize
+    ;;
+build)
+    take_nothing "$@"
+    compile
+    ;;
 format) format "$@" ;;
 help | -h | --help) usage ;;
 *)

@@ -7,7 +7,7 @@ Run it by `scripts/run.sh sail PATTERN.fold|MESH.msh [options]`.
 import argparse
 from pathlib import Path
 
-from membrane.commands import plain_errors
+from membrane.commands import folder, plain_errors
 from membrane.parameters import from_arguments, parse
 from membrane.unfinished import new_results
 
@@ -23,7 +23,7 @@ def command_line():
     )
     parser.add_argument("file", type=Path, help="crease pattern (.fold) or mesh of gmsh (.msh)")
     parser.add_argument(
-        "--out", type=Path, default=Path("out"), metavar="DIR", help="output folder"
+        "--out", type=folder, default=Path("out"), metavar="DIR", help="output folder"
     )
     parser.add_argument("--no-pictures", action="store_true", help="draw no pictures")
     return parse(parser, PatternParameters)
@@ -33,10 +33,10 @@ def main():
     """Spin the sail; sys.exit with one sentence if that cannot be."""
     with plain_errors("sail"):
         arguments = command_line()
-        folder, pictures = arguments.out, not arguments.no_pictures
+        out, pictures = arguments.out, not arguments.no_pictures
         parameters = from_arguments(arguments, kind=PatternParameters)
         sheet = pattern_sail.read_sheet(arguments.file, parameters)
-        with new_results(folder) as part:
+        with new_results(out) as part:
             summary = pattern_sail.fly(sheet, parameters, part, pictures)
     found = summary["measures"]
     print(
@@ -49,7 +49,7 @@ def main():
     shown = ["shapes.png", "history.png"] if pictures else []
     others = ["history.csv", "summary.json", "sail.fold", "shapes/film.pvd", "shapes/sides.pvd"]
     for name in [*shown, *others]:
-        print(f"  {folder / name}")
+        print(f"  {out / name}")
 
 
 main()

@@ -19,6 +19,9 @@ def main():
     parser.add_argument("--full", action="store_true", help="also run the long tests")
     parser.add_argument("modules", nargs="*", metavar="MODULE", help="as test_creases; default all")
     arguments = parser.parse_args()
+    for module in arguments.modules:
+        if not (Path(sys.path[0]) / f"{module.partition('.')[0]}.py").is_file():
+            parser.error(f"there is no test module '{module}'")
 
     import all_tests
     import support

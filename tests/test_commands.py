@@ -18,7 +18,7 @@ PATTERN = SCRIPTS / "patterns" / "miura.fold"
 SMALL = ["--fold-lines", "3", "--inner-width", "0.15", "--spin-up-tolerance", "1e-3"]
 SHORT = [*SMALL, "--duration", "0.005", "--shapes-interval", "0.002", "--no-report"]
 DIVERGES = [*SMALL, "--duration", "0.2", "--dt", "2.3e-5", "--force-time-step"]
-STOPPED = 130
+STOPPED, TERMINATED = 130, 143
 
 # Mounts a small file system, copies earlier results onto it, runs a command, and says at the end
 # whether those results are still what they were.
@@ -93,6 +93,20 @@ class TestCommandLines(BadDayTest):
             name = script.removesuffix(".py")
             self.ends(start(script, "missing_folder"), 1, f"^{name}: .*missing_folder")
 
+    def test_sizes_without_sense_are_refused_at_once(self):
+        for option, value, sentence in (
+            ("--fold-lines", "1000000", "must be .*1000"),
+            ("--spool-facets", "100000000", "must be"),
+            ("--out", "", "--out: must name a folder"),
+        ):
+            status = 2 if option == "--out" else 1
+            self.ends(start("deploy.py", option, value), status, f"^deploy: .*{sentence}")
+        self.ends(start("chart.py", "--steps", "0"), 2, "^chart: error: .*--steps: 0: must be")
+        self.ends(start("parts.py", "--members", "1"), 2, "^parts: error: --members 1: must be")
+        huge = scratch() / "huge.json"
+        huge.write_text('{"omega": 1' + "0" * 400 + "}")
+        self.ends(start("deploy.py", "--parameters", huge), 1, "^deploy: .*omega .*too large")
+
     def test_wrong_option_and_value(self):
         self.ends(start("deploy.py", "--bogus", "1"), 2, "^deploy: error: .*--bogus")
         self.ends(start("deploy.py", "--beta", "-3"), 1, "^deploy: beta = -3.0 must be >= 0")
@@ -120,6 +134,10 @@ class TestTables(BadDayTest):
         ):
             with self.subTest(value=value):
                 self.ends(self.run_row("deploy.py", "beta", value), 1, f"^deploy: .*{sentence}")
+        for column, value in (("out", "5"), ("checkpoint_every", "'often'")):
+            with self.subTest(column=column):
+                sentence = f"^case: .*line 2: {column} = {value} must be a"
+                self.ends(self.run_row("case.py", column, value), 1, sentence)
 
 
 class TestMissingPackages(BadDayTest):
@@ -186,6 +204,13 @@ class TestEarlierResults(BadDayTest):
                 said += line
             process.send_signal(signal.SIGINT)
             self.ends(process, STOPPED, "stopped by Ctrl-C")
+
+    def test_sigterm_leaves_them_whole(self):
+        process = start("deploy.py", *SMALL, "--out", self.folder)
+        while "deploying" not in process.stderr.readline():
+            self.assertIsNone(process.poll())
+        process.terminate()
+        self.ends(process, TERMINATED, "^deploy: terminated")
 
     def check_on_disk(self, size, mode, sentence):
         """How a run ends on a file system of its own, where earlier results are, too."""

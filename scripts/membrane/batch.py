@@ -4,10 +4,12 @@
 import difflib
 import os
 from dataclasses import fields
+from numbers import Real
 
 from yade import utils
 from yade.wrapper import Omega
 
+from .files import shown
 from .parameters import SailParameters
 
 
@@ -48,6 +50,12 @@ def batch_row(**others):
         ) from error
     from yade.params import table
 
+    for name, default in others.items():
+        value = getattr(table, name)
+        wanted = Real if isinstance(default, Real) else (str, type(None))
+        if not isinstance(value, wanted):
+            kind = "a number" if wanted is Real else "a text in quotes"
+            raise ValueError(f"{file}, line {line}: {name} = {shown(value)} must be {kind}")
     return (
         {name: getattr(table, name) for name in defaults},
         {name: getattr(table, name) for name in others},

@@ -1,11 +1,33 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """How the commands of scripts/ end where something is wrong: one sentence and an exit status."""
 
+import argparse
+import signal
 import sys
 from contextlib import contextmanager
+from pathlib import Path
 
-STOPPED = 130  # exit status of what Ctrl-C stops, as shells have it
+STOPPED, TERMINATED = 130, 143  # exit statuses after Ctrl-C and SIGTERM, as shells have them
 DEBIAN = {"vtkmodules": "vtk9"}  # packages whose names in Python and in Debian differ
+
+
+class Terminated(BaseException):
+    """SIGTERM has come; as an exception, so that everything that was begun is cleared away."""
+
+
+def folder(text):
+    """A Path from a word of the command line, which must not be empty."""
+    if not text:
+        raise argparse.ArgumentTypeError("must name a folder")
+    return Path(text)
+
+
+def count(text):
+    """A whole number from a word of the command line, which must be at least 1."""
+    number = int(text)
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"{text}: must be at least 1")
+    return number
 
 
 @contextmanager
@@ -22,14 +44,26 @@ def plain_errors(command, stopped="stopped by Ctrl-C"):
     stopped : str
         What to say after Ctrl-C.
     """
+    before = signal.signal(signal.SIGTERM, _terminate)
     try:
         yield
     except KeyboardInterrupt:
         print(f"\n{command}: {stopped}", file=sys.stderr)
         sys.exit(STOPPED)
+    except Terminated:
+        print(f"\n{command}: terminated", file=sys.stderr)
+        sys.exit(TERMINATED)
+    except MemoryError as error:
+        sys.exit(f"{command}: there is not enough memory" + (f": {error}" if str(error) else ""))
     except ModuleNotFoundError as error:
         package = (error.name or "").partition(".")[0]
         by_hand = f"apt-get install python3-{DEBIAN.get(package, package)}"
         sys.exit(f"{command}: {error}; scripts/run.sh {command} installs it, or by hand: {by_hand}")
-    except (ImportError, ValueError, RuntimeError, OSError, MemoryError) as error:
-        sys.exit(f"{command}: {error or type(error).__name__}")
+    except (ImportError, ValueError, RuntimeError, OSError) as error:
+        sys.exit(f"{command}: {str(error) or type(error).__name__}")
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _terminate(number, frame):
+    raise Terminated

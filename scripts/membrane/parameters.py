@@ -43,7 +43,7 @@ parameter = _parameter  # for other scenes
 class SailParameters:
     """Parameters of the deployment; `describe(name)` gives meaning, unit, range and source."""
 
-    fold_lines: int = _parameter(7, "-", TABLE_1, "fold lines on each petal", least=1)
+    fold_lines: int = _parameter(7, "-", TABLE_1, "fold lines on each petal", least=1, most=1000)
     outer_width: float = _parameter(0.455, "m", TABLE_1, "outer width", above=True)
     inner_width: float = _parameter(0.103, "m", TABLE_1, "inner width", above=True)
     thickness: float = _parameter(7.5e-6, "m", TABLE_1, "thickness h of the film", above=True)
@@ -73,7 +73,9 @@ class SailParameters:
     hub_inertia: float = _parameter(
         0.0, "kg m2", ASSUMED, "of a spool that turns freely, about the axis; 0: driven at omega"
     )
-    tether_segments: int = _parameter(4, "-", ASSUMED, "segments of each tether", least=1)
+    tether_segments: int = _parameter(
+        4, "-", ASSUMED, "segments of each tether", least=1, most=10_000
+    )
     tether_stiffness: float = _parameter(200.0, "N", ASSUMED, "EA of the tethers", above=True)
     tether_density: float = _parameter(
         2e-4, "kg/m", ASSUMED, "mass a length of the tethers", above=True
@@ -82,7 +84,9 @@ class SailParameters:
         5e-4, "m", ASSUMED, "radius of tether masses in contact", above=True
     )
     spool_height: float = _parameter(0.06, "m", ASSUMED, "height of the spool", above=True)
-    spool_facets: int = _parameter(36, "-", ASSUMED, "flat faces of the spool", least=3)
+    spool_facets: int = _parameter(
+        36, "-", ASSUMED, "flat faces of the spool", least=3, most=10_000
+    )
     spool_young: float = _parameter(
         1e6, "Pa", ASSUMED, "stiffness of the spool's contact", above=True
     )
@@ -148,6 +152,10 @@ def _check(item, value):
         return
     if not isinstance(value, Real):
         raise ValueError(f"{item.name} = {shown(value)} must be a number")
+    try:
+        float(value)
+    except OverflowError:
+        raise ValueError(f"{item.name} = {shown(value)} is too large a number") from None
     if item.type is int and not (abs(value) < inf and value == int(value)):
         raise ValueError(f"{item.name} = {value} must be a whole number")
     low = value > about["least"] if about["above"] else value >= about["least"]
