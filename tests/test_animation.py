@@ -5,7 +5,9 @@ import contextlib
 import json
 import os
 import shutil
+import signal
 import subprocess
+import time
 import unittest
 from unittest import mock
 
@@ -14,7 +16,7 @@ from membrane import animation
 from membrane.mesh import sail_mesh
 from membrane.output import VtkSeries, list_series, read_frame
 from membrane.parameters import SailParameters
-from support import CommandTest, scratch, short_run
+from support import ROOT, CommandTest, scratch, short_run, yade_environment
 
 MISSING = [program for program in ("Xvfb", "ffmpeg") if not shutil.which(program)]
 
@@ -132,6 +134,31 @@ class TestWithoutTools(unittest.TestCase):
 class TestCommand(CommandTest):
     def test_folder_without_a_run_ends_with_one_sentence(self):
         self.ends_without_a_run("animate")
+
+    @unittest.skipIf(MISSING, f"needs {' and '.join(MISSING)}")
+    def test_control_c_leaves_earlier_films_and_nothing_that_runs(self):
+        folder = scratch() / "stopped_animation"
+        shutil.copytree(short_run(), folder)
+        for name in animation.FILES:
+            (folder / name).write_text("made before")
+        before = sorted(path.name for path in folder.iterdir())
+        process = subprocess.Popen(
+            ["yade", "-n", "-x", ROOT / "scripts" / "animate.py", folder],
+            env=yade_environment(),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            start_new_session=True,
+        )
+        while process.poll() is None and not list(folder.glob("*.part.*")):
+            time.sleep(0.01)
+        os.killpg(process.pid, signal.SIGINT)  # as a terminal does
+        said, _ = process.communicate()  # until no process holds its output
+        self.assertEqual(process.returncode, 130, said)
+        self.assertRegex(said.strip().splitlines()[-1], "^animate: stopped by Ctrl-C")
+        self.assertEqual(sorted(path.name for path in folder.iterdir()), before)
+        for name in animation.FILES:
+            self.assertEqual((folder / name).read_text(), "made before")
 
 
 if __name__ == "__main__":

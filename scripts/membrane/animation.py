@@ -78,12 +78,21 @@ def animate(folder):
             raise RuntimeError(f"no animation without {program} (apt-get install {package})")
     summary = json.loads((folder / "summary.json").read_text())
     shapes = list_series(folder / "shapes" / "film.pvd")
-    film, gif = (folder / name for name in FILES)
-    with virtual_display():
-        with contextlib.closing(Stage(SailParameters(**summary["parameters"]), shapes)) as stage:
-            _encode(film, (stage.picture(i) for i in range(len(shapes))))
-    _write_gif(film, gif, len(shapes))
-    return [film, gif]
+    films = [folder / name for name in FILES]
+    parts = [path.with_name(f"{path.stem}.part{path.suffix}") for path in films]
+    try:
+        with virtual_display():
+            with contextlib.closing(
+                Stage(SailParameters(**summary["parameters"]), shapes)
+            ) as stage:
+                _encode(parts[0], (stage.picture(i) for i in range(len(shapes))))
+        _write_gif(*parts, len(shapes))
+        for part, path in zip(parts, films):
+            os.replace(part, path)
+    finally:
+        for part in parts:
+            part.unlink(missing_ok=True)
+    return films
 
 
 @contextlib.contextmanager
@@ -92,7 +101,11 @@ def virtual_display():
     reading, writing = os.pipe()
     command = ["Xvfb", "-displayfd", str(writing), "-screen", "0", "1280x1024x24"]
     server = subprocess.Popen(
-        [*command, "-nolisten", "tcp"], pass_fds=[writing], stderr=subprocess.DEVNULL
+        [*command, "-nolisten", "tcp"],
+        pass_fds=[writing],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,  # Ctrl-C is for us: Xlib would end the process if the server went
     )
     os.close(writing)
     before = os.environ.get("DISPLAY")
@@ -341,12 +354,20 @@ def _encode(path, pictures):
         "+faststart",
     ]
     encoder = subprocess.Popen(
-        _ffmpeg(*source, "-i", "-", *target, path), stdin=subprocess.PIPE, stderr=subprocess.PIPE
+        _ffmpeg(*source, "-i", "-", *target, path),
+        stdin=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        start_new_session=True,
     )
-    with contextlib.suppress(BrokenPipeError):  # its message tells more
-        for picture in pictures:
-            encoder.stdin.write(picture.tobytes())
-    _, said = encoder.communicate()
+    try:
+        with contextlib.suppress(BrokenPipeError):  # its message tells more
+            for picture in pictures:
+                encoder.stdin.write(picture.tobytes())
+        _, said = encoder.communicate()
+    except BaseException:
+        encoder.kill()
+        encoder.communicate()
+        raise
     if encoder.returncode:
         raise RuntimeError(f"ffmpeg failed on {path}: {said.decode().strip()[-300:]}")
 
@@ -361,7 +382,7 @@ def _write_gif(film, gif, pictures):
             "[b][p]paletteuse=dither=bayer:bayer_scale=4"
         )
         command = _ffmpeg("-i", film, "-vf", look, "-r", f"{RATE}/{skip}", gif)
-        done = subprocess.run(command, capture_output=True, text=True)
+        done = subprocess.run(command, capture_output=True, text=True, start_new_session=True)
         if done.returncode:
             raise RuntimeError(f"ffmpeg failed on {gif}: {done.stderr.strip()[-300:]}")
         if gif.stat().st_size <= GIF_LARGEST:
