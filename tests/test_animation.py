@@ -7,7 +7,7 @@ import os
 import shutil
 import signal
 import subprocess
-import time
+from time import sleep
 import unittest
 from unittest import mock
 
@@ -151,7 +151,7 @@ class TestCommand(CommandTest):
             start_new_session=True,
         )
         while process.poll() is None and not list(folder.glob("*.part.*")):
-            time.sleep(0.01)
+            sleep(0.01)
         os.killpg(process.pid, signal.SIGINT)  # as a terminal does
         said, _ = process.communicate()  # until no process holds its output
         self.assertEqual(process.returncode, 130, said)
