@@ -31,6 +31,7 @@ with plain_errors("ikaros"):
     from matplotlib.figure import Figure
     from membrane import hub, plots, sail
     from membrane.record import Recorder
+    from membrane.report import PAGE
 
 RPM = 2 * pi / 60
 THICKNESS = 7.5e-6  # m, of the polyimide film
@@ -118,6 +119,13 @@ def report(p, history, rigid):
 
     return {
         "parameters": p.as_dict(),
+        "measures": {
+            "spin_before": float(history["hub_spin"][0]),
+            "spin_after": mean(history["hub_spin"]),
+            "spin_after_by_momentum": RPM * mean(rigid),
+            "final_deployment_rate": float(history["deployment_rate"][-1]),
+            "largest_deployment_rate": float(history["deployment_rate"].max()),
+        },
         "spin_rpm": {
             "before": float(history["hub_spin"][0] / RPM),
             "after": mean(history["hub_spin"]) / RPM,
@@ -158,6 +166,7 @@ def deploy(p, spin, folder):
     summary = {"critical_time_step": critical, **report(p, history, rigid)}
     write_json(folder / "summary.json", summary)
     draw(mesh, recorder, history, rigid, folder / "ikaros.png")
+    sail.write_page(folder)
     return summary
 
 
@@ -174,8 +183,9 @@ def main():
         f"after. Inertia from {found['inertia_before']:.0f} to {found['inertia_after']:.0f} kg m2."
     )
     print("Look at:")
-    for name in ("ikaros.png", "history.csv", "summary.json", "shapes/film.pvd"):
-        print(f"  {arguments.out / name}")
+    for name in ("ikaros.png", PAGE, "history.csv", "summary.json", "shapes/film.pvd"):
+        if (arguments.out / name).exists():
+            print(f"  {arguments.out / name}")
 
 
 if __name__ == "__main__":

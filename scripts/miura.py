@@ -14,6 +14,7 @@ from membrane.unfinished import new_results
 
 with plain_errors("miura"):
     from membrane import pattern_sail
+    from membrane.report import PAGE
 
 PATTERN = Path(sys.argv[0]).resolve().parent / "patterns" / "miura.fold"
 INSTANTS = (0.0, 0.015, 0.03, 0.05, 0.1, 1.0)  # s
@@ -52,7 +53,10 @@ def main():
         f"{chosen.duration:g} s, turning at {found['final_spin_rate']:.2f} rad/s; energy from "
         f"nowhere {found['largest_unexplained_energy']:.1e} of {found['largest_energy']:.1e} J."
     )
-    print(f"Look at {arguments.out / 'shapes.png'} and {arguments.out / 'history.png'}")
+    print("Look at:")
+    for name in ("shapes.png", "history.png", PAGE):
+        if (arguments.out / name).exists():
+            print(f"  {arguments.out / name}")
 
 
 main()

@@ -283,6 +283,7 @@ deploy)
 sail | miura)
     need "${sail_packages[@]}"
     compile
+    viewer_if_possible
     run_yade "$root/scripts/$command.py" "$@"
     ;;
 watch)
@@ -334,7 +335,12 @@ animate)
     compile
     run_yade "$root/scripts/animate.py" "$@"
     ;;
-ikaros | disk)
+ikaros)
+    compile
+    viewer_if_possible
+    run_yade "$root/scripts/ikaros.py" "$@"
+    ;;
+disk)
     compile
     run_yade "$root/scripts/$command.py" "$@"
     ;;

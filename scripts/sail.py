@@ -14,6 +14,7 @@ from membrane.unfinished import new_results
 with plain_errors("sail"):
     from membrane import pattern_sail
     from membrane.pattern_sail import PatternParameters
+    from membrane.report import PAGE
 
 
 def command_line():
@@ -26,6 +27,7 @@ def command_line():
         "--out", type=folder, default=Path("out"), metavar="DIR", help="output folder"
     )
     parser.add_argument("--no-pictures", action="store_true", help="draw no pictures")
+    parser.add_argument("--no-report", action="store_true", help="write no report.html")
     return parse(parser, PatternParameters)
 
 
@@ -37,7 +39,8 @@ def main():
         parameters = from_arguments(arguments, kind=PatternParameters)
         sheet = pattern_sail.read_sheet(arguments.file, parameters)
         with new_results(out) as part:
-            summary = pattern_sail.fly(sheet, parameters, part, pictures)
+            page = not arguments.no_report
+            summary = pattern_sail.fly(sheet, parameters, part, pictures, page=page)
     found = summary["measures"]
     print(
         f"Projected area {found['final_projected_area']:.3f} of the flat one after "
@@ -47,6 +50,7 @@ def main():
     )
     print("Look at:")
     shown = ["shapes.png", "history.png"] if pictures else []
+    shown += [PAGE] if (out / PAGE).exists() else []
     others = ["history.csv", "summary.json", "sail.fold", "shapes/film.pvd", "shapes/sides.pvd"]
     for name in [*shown, *others]:
         print(f"  {out / name}")

@@ -6,7 +6,6 @@ of the pictures. One picture for each shape of the run: none is made up between 
 """
 
 import contextlib
-import json
 import os
 import shutil
 import subprocess
@@ -33,9 +32,8 @@ from vtkmodules.vtkRenderingCore import (
     vtkTextActor,
 )
 
-from .mesh import mesh_of
-from .output import cell_array, list_series, read_frame
-from .parameters import SailParameters
+from .finished_run import read_run
+from .output import cell_array, read_frame
 from .plots import FILM, SPOOL, VIEW
 
 FILES = ("sail.mp4", "sail.gif")
@@ -51,7 +49,7 @@ FOLD_LINE = (0.45, 0.28, 0.10)
 MARK = (0.92, 0.93, 0.95)
 PAPER, SKY = (0.96, 0.97, 0.98), (0.84, 0.88, 0.93)  # background, bottom and top
 MARGIN = 1.1  # of the view beyond what it shows
-TIP_RADIUS = 5e-3  # as drawn [m]; a tip mass has no size in the model
+TIP_RADIUS = 0.014  # as drawn, over half the view's diagonal; a tip mass has no size in the model
 
 
 def animate(folder):
@@ -76,17 +74,14 @@ def animate(folder):
     for program, package in {"Xvfb": "xvfb", "ffmpeg": "ffmpeg"}.items():
         if not shutil.which(program):
             raise RuntimeError(f"no animation without {program} (apt-get install {package})")
-    summary = json.loads((folder / "summary.json").read_text())
-    shapes = list_series(folder / "shapes" / "film.pvd")
+    run = read_run(folder)
     films = [folder / name for name in FILES]
     parts = [path.with_name(f"{path.stem}.part{path.suffix}") for path in films]
     try:
         with virtual_display():
-            with contextlib.closing(
-                Stage(SailParameters(**summary["parameters"]), shapes)
-            ) as stage:
-                _encode(parts[0], (stage.picture(i) for i in range(len(shapes))))
-        _write_gif(*parts, len(shapes))
+            with contextlib.closing(Stage(run)) as stage:
+                _encode(parts[0], (stage.picture(i) for i in range(len(run.shapes))))
+        _write_gif(*parts, len(run.shapes))
         for part, path in zip(parts, films):
             os.replace(part, path)
     finally:
@@ -131,16 +126,15 @@ class Stage:
 
     Parameters
     ----------
-    parameters : SailParameters
-    shapes : list of (float, Path)
-        Times [s] and .vtu files.
+    run : FinishedRun
     """
 
-    def __init__(self, parameters, shapes):
-        self.parameters, self.shapes = parameters, shapes
-        self.mesh = mesh_of(parameters)
+    def __init__(self, run):
+        self.run, self.shapes = run, run.shapes
+        self.turned = run.turned([time for time, _ in run.shapes])
         self.points = vtkPoints()
-        self.points.SetNumberOfPoints(len(self.mesh.nodes))
+        self.points.SetNumberOfPoints(len(read_frame(run.shapes[0][1])[0]))
+        self.turn = vtkTransform()
         self.renderer = vtkRenderer()
         self.renderer.GradientBackgroundOn()
         self.renderer.SetBackground(PAPER)
@@ -151,12 +145,13 @@ class Stage:
         self.window.SetSize(*SIZE)
         self.window.AddRenderer(self.renderer)
         self._add_film()
-        self._add_lines(self.mesh.creases, FOLD_LINE, 1.5)
-        self._add_lines(self.mesh.cables, INK, 1.5)
-        self._add_tips()
-        self._add_spool()
+        self._add_lines(run.creases, FOLD_LINE, 1.5)
+        self._add_lines(run.cables, INK, 1.5)
+        if run.spool:
+            self._add_spool()
         self._add_light()
-        self._aim()
+        reach = self._aim()
+        self._add_tips(TIP_RADIUS * reach)
         self._add_scale_bar()
         self.clock = self._add_text("", 40, (0.03, 0.90))
         slowed = self._slowed()
@@ -169,10 +164,10 @@ class Stage:
         positions, _ = read_frame(path)
         self.points.SetData(numpy_to_vtk(positions, deep=True))
         self.points.Modified()
-        for ball, tip in zip(self.tips, self.mesh.tips):
+        for ball, tip in zip(self.tips, self.run.tips):
             ball.SetPosition(positions[tip])
         self.turn.Identity()
-        self.turn.RotateZ(np.degrees(self.parameters.omega * time))
+        self.turn.RotateZ(np.degrees(self.turned[i]))
         self.clock.SetInput(f"t = {time:.3f} s")
         self.window.Render()
         pixels = vtkUnsignedCharArray()
@@ -201,7 +196,7 @@ class Stage:
     def _add_film(self):
         film = vtkPolyData()
         film.SetPoints(self.points)
-        film.SetPolys(cell_array(self.mesh.triangles))
+        film.SetPolys(cell_array(self.run.triangles))
         actor = self._surface(film, FILM)
         # Lines on the film lie in front of it.
         actor.GetMapper().SetResolveCoincidentTopologyToPolygonOffset()
@@ -223,18 +218,18 @@ class Stage:
         look.SetLineWidth(width)
         look.LightingOff()
 
-    def _add_tips(self):
+    def _add_tips(self, radius):
         ball = vtkSphereSource()
-        ball.SetRadius(TIP_RADIUS)
+        ball.SetRadius(radius)
         ball.SetThetaResolution(24)
         ball.SetPhiResolution(16)
-        self.tips = [self._surface(ball, INK) for _ in self.mesh.tips]
+        self.tips = [self._surface(ball, INK) for _ in self.run.tips]
         for actor in self.tips:
             actor.GetProperty().SetSpecular(0.4)
 
     def _add_spool(self):
         """A cylinder about the axis, with a mark by which one sees it turn."""
-        radius, height = self.parameters.spool_radius, self.parameters.spool_height
+        radius, height = self.run.spool
         body = vtkCylinderSource()
         body.SetRadius(radius)
         body.SetHeight(height)
@@ -244,7 +239,6 @@ class Stage:
         mark.SetXLength(radius)
         mark.SetYLength(radius / 8)
         mark.SetZLength(1.01 * height)
-        self.turn = vtkTransform()
         upright = vtkTransform()
         upright.SetInput(self.turn)
         upright.RotateX(90)  # VTK's cylinders stand along y
@@ -265,18 +259,22 @@ class Stage:
         self.renderer.AddLight(fill)
 
     def _aim(self):
-        """Look as in shapes.png, at what the sail and the spool reach in all the shapes."""
+        """Look as in shapes.png, at what the sail and the spool reach in all the shapes.
+
+        Returns half the diagonal [m] of what is seen.
+        """
         elevation, azimuth = radians(VIEW["elev"]), radians(VIEW["azim"])
         towards = np.array(
             [cos(elevation) * cos(azimuth), cos(elevation) * sin(azimuth), sin(elevation)]
         )
         right = np.array([-sin(azimuth), cos(azimuth), 0])
         screen = np.array([right, np.cross(towards, right)])  # right and up
-        low, high = self._spool_extent(elevation)
+        low, high = self._spool_extent(elevation) if self.run.spool else (np.inf, -np.inf)
         for _, path in self.shapes:
             places = read_frame(path)[0] @ screen.T
             low, high = np.minimum(low, places.min(axis=0)), np.maximum(high, places.max(axis=0))
-        half = (high - low) / 2 + TIP_RADIUS
+        half = (high - low) / 2
+        half += TIP_RADIUS * np.hypot(*half)
         reach = np.hypot(*half)
         focus = (low + high) / 2 @ screen
         camera = self.renderer.GetActiveCamera()
@@ -286,10 +284,11 @@ class Stage:
         camera.SetViewUp(0, 0, 1)
         camera.SetParallelScale(MARGIN * max(half[1], half[0] * SIZE[1] / SIZE[0]))
         camera.SetClippingRange(0.5 * reach, 8 * reach)
+        return reach
 
     def _spool_extent(self, elevation):
         """Lower left and upper right (2,) [m] of the spool seen from an elevation [rad]."""
-        radius, height = self.parameters.spool_radius, self.parameters.spool_height
+        radius, height = self.run.spool
         corner = np.array([radius, height / 2 * cos(elevation) + radius * sin(elevation)])
         return -corner, corner
 
@@ -331,9 +330,11 @@ class Stage:
         return actor
 
     def _slowed(self):
-        """How much slower than reality the film is, in words; none if it is not."""
+        """How much slower or faster than reality the film is, in words; none if it is not."""
         times = [time for time, _ in self.shapes]
         share = RATE * (times[-1] - times[0]) / max(1, len(times) - 1)
+        if share > 1.01:
+            return f"speeded up {share:.3g} times"
         return f"slowed down {1 / share:.3g} times" if 0 < share < 0.99 else ""
 
 

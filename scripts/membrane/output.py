@@ -11,7 +11,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonCore import vtkObject, vtkPoints
 from vtkmodules.vtkCommonDataModel import VTK_LINE, VTK_TRIANGLE, vtkCellArray, vtkUnstructuredGrid
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
 
@@ -194,25 +194,66 @@ class HistoryWriter:
 
 
 def list_series(path):
-    """Times [s] and .vtu files of a .pvd file of VtkSeries: list of (float, Path)."""
-    items = ElementTree.parse(path).iter("DataSet")
-    return [(float(item.get("timestep")), Path(path).parent / item.get("file")) for item in items]
+    """Times [s] and .vtu files of a .pvd file of VtkSeries: list of (float, Path), not empty.
+
+    Raises
+    ------
+    BadFile
+        If it is no list of files in its own folder at rising times.
+    """
+    path = Path(path)
+    try:
+        items = list(ElementTree.fromstring(read_text(path)).iter("DataSet"))
+    except ElementTree.ParseError as error:
+        raise BadFile(path, "", f"is no XML: {error}") from None
+    series = []
+    for number, item in enumerate(items):
+        time, name = item.get("timestep", ""), item.get("file", "")
+        if not _is_value(time) or not name or Path(name).name != name:
+            raise BadFile(path, f"shape {number}", "must have a finite time and the name of a file")
+        if series and float(time) <= series[-1][0]:
+            raise BadFile(path, f"shape {number}", "must be later than the one before")
+        series.append((float(time), path.parent / name))
+    if not series:
+        raise BadFile(path, "", "lists no shapes")
+    return series
 
 
 def read_frame(path):
     """Positions (N, 3) [m] and cell data, (M,) by name, of a .vtu file of VtkSeries."""
-    if not Path(path).is_file():
-        raise FileNotFoundError(f"{path}: there is no such file")
-    reader = vtkXMLUnstructuredGridReader()
-    reader.SetFileName(str(path))
-    reader.Update()
-    grid = reader.GetOutput()
-    if not grid.GetNumberOfPoints():
-        raise OSError(f"{path}: could not be read")
+    grid = _read_grid(path)
     data = grid.GetCellData()
     arrays = [data.GetArray(i) for i in range(data.GetNumberOfArrays())]
     fields = {array.GetName(): vtk_to_numpy(array) for array in arrays}
     return vtk_to_numpy(grid.GetPoints().GetData()), fields
+
+
+def read_cells(path, corners):
+    """Node ids (M, `corners`) of the cells of a .vtu file of VtkSeries; BadFile if they differ."""
+    grid = _read_grid(path)
+    count, nodes = grid.GetNumberOfCells(), grid.GetNumberOfPoints()
+    cells = vtk_to_numpy(grid.GetCells().GetConnectivityArray())
+    if len(cells) != corners * count or cells.min() < 0 or cells.max() >= nodes:
+        raise BadFile(path, "", f"must hold cells of {corners} of its {nodes} nodes each")
+    return cells.reshape(count, corners)
+
+
+def _read_grid(path):
+    """The grid of a .vtu file, read by VTK, which says nothing itself."""
+    if not Path(path).is_file():
+        raise FileNotFoundError(f"{path}: there is no such file")
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(path))
+    said = vtkObject.GetGlobalWarningDisplay()
+    vtkObject.GlobalWarningDisplayOff()
+    try:
+        reader.Update()
+    finally:
+        vtkObject.SetGlobalWarningDisplay(said)
+    grid = reader.GetOutput()
+    if not grid.GetNumberOfPoints() or not grid.GetNumberOfCells():
+        raise BadFile(path, "", "could not be read")
+    return grid
 
 
 def read_history(path):

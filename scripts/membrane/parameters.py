@@ -267,15 +267,20 @@ def read_values(path, kind=SailParameters):
     values = values.get("parameters", values)
     if not isinstance(values, dict):
         raise BadFile(path, "parameters", f"must be an object, not {shown(values)}")
+    complete = from_values(path, values, kind)
+    return {name: getattr(complete, name) for name in values}
+
+
+def from_values(path, values, kind=SailParameters):
+    """Parameters from a dict of values by name that a file holds; BadFile if one is wrong."""
     known = {item.name for item in fields(kind)}
     for name in values:
         if name not in known:
             raise BadFile(path, shown(name)[1:-1], "is no parameter")
     try:
-        complete = kind(**values)
+        return kind(**values)
     except ValueError as error:
         raise BadFile(path, "", str(error)) from None
-    return {name: getattr(complete, name) for name in values}
 
 
 def read_parameters(path, kind=SailParameters):

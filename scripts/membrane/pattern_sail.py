@@ -23,7 +23,7 @@ from .pattern_mesh import mesh_pattern
 from .patterns import crease_pattern, nearest_pose
 from .record import LEDGER_UNITS, Recorder
 from .sail import Stopwatch, add_membrane, check_step, counts, instants, march, nearest
-from .sail import save_last_good, set_engines, versions
+from .sail import save_last_good, set_engines, versions, write_page
 
 SHEET, SPIN = "sheet", "spin"
 STEP = 0.5  # of the critical one, by default
@@ -279,7 +279,7 @@ class PatternRecorder(Recorder):
         }
 
 
-def fly(sheet, p, folder, pictures=True, shown=None):
+def fly(sheet, p, folder, pictures=True, shown=None, page=True):
     """Run a sheet as a spinning sail and write the results into `folder`.
 
     Parameters
@@ -292,6 +292,8 @@ def fly(sheet, p, folder, pictures=True, shown=None):
         Draw shapes.png and history.png.
     shown : sequence of float, optional
         Up to six times [s] to show in shapes.png; default: up to the fullest deployment.
+    page : bool
+        Write report.html, as `sail.deploy` does.
 
     Returns
     -------
@@ -347,6 +349,8 @@ def fly(sheet, p, folder, pictures=True, shown=None):
     }
     write_json(folder / "summary.json", summary)
     write_json(folder / "wall_time.json", wall)
+    if page:
+        write_page(folder)
     return {**summary, "wall_time": wall}
 
 

@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
+from .files import BadFile, replace_text
+from .finished_run import read_run
 from .geometry import crease_angles
-from .mesh import mesh_of
-from .output import list_series, read_frame, read_history
-from .parameters import SailParameters
+from .output import read_frame
 from .unfinished import name_of
 
 PAGE = "report.html"
@@ -31,9 +31,14 @@ FIELDS = (
     ("crease_angle", "crease angle", "deg", 180 / np.pi, "0 folded, 180 flat or no fold line"),
 )
 
-# Plots: label, unit, factor from SI, lines as (column of history.csv, label).
+RPM = 30 / np.pi  # of 1 rad/s
+
+# Plots: label, unit, factor from SI, lines as (column of history.csv, label). A run has those of
+# whose columns its history.csv has the first.
 CURVES = (
     ("deployment rate", "-", 1.0, [("deployment_rate", "rate")]),
+    ("area over flat area", "-", 1.0, [("projected_area", "projected")]),
+    ("hub", "rpm", RPM, [("hub_spin", "spin")]),
     (
         "phase difference",
         "deg",
@@ -43,10 +48,12 @@ CURVES = (
             *[(f"phase_difference_{tip}", f"tip {tip}") for tip in range(4)],
         ],
     ),
+    ("crease angle", "deg", 180 / np.pi, [("mean_crease_angle", "mean")]),
+    ("spin", "rad/s", 1.0, [("spin_rate", "mean of the sail")]),
     (
         "energy",
-        "mJ",
-        1e3,
+        "J",
+        1.0,
         [
             ("spool_work", "spool work"),
             ("kinetic_energy", "kinetic"),
@@ -56,8 +63,9 @@ CURVES = (
         ],
     ),
 )
+MILLI = {"J": ("mJ", 1e3)}  # units for what stays below 1
 
-# Measures of summary.json: name, label, unit, factor from SI.
+# Measures of summary.json: name, label, unit, factor from SI. A run has some of them.
 MEASURES = (
     ("final_deployment_rate", "deployment rate at the end", "-", 1.0),
     ("largest_deployment_rate", "largest deployment rate", "-", 1.0),
@@ -65,6 +73,14 @@ MEASURES = (
     ("largest_lag", "largest lag of the tips", "deg", 180 / np.pi),
     ("time_of_largest_lag", "time of the largest lag", "s", 1.0),
     ("return_time", "tips back at the spool's angle", "s", 1.0),
+    ("spin_before", "spin of the hub before", "rpm", RPM),
+    ("spin_after", "spin of the hub after", "rpm", RPM),
+    ("spin_after_by_momentum", "after, by angular momentum", "rpm", RPM),
+    ("final_projected_area", "area over flat area at the end", "-", 1.0),
+    ("largest_projected_area", "largest area over flat area", "-", 1.0),
+    ("time_of_area_0.9", "area above 0.9 from", "s", 1.0),
+    ("final_spin_rate", "spin at the end", "rad/s", 1.0),
+    ("final_mean_crease_angle", "mean crease angle at the end", "deg", 180 / np.pi),
     ("largest_spool_work", "largest work of the spool", "mJ", 1e3),
     ("largest_energy_imbalance", "largest energy imbalance", "mJ", 1e3),
 )
@@ -101,36 +117,49 @@ def write_report(folder):
     # "<" could end the page's script.
     content = json.dumps(run_data(folder), allow_nan=False).replace("<", "\\u003c")
     page = folder / PAGE
-    page.write_text(before + content + after)
+    replace_text(page, before + content + after)
     return page
 
 
 def run_data(folder):
     """What the page shows of a run, as plain lists, numbers and packed arrays (see `_pack`)."""
-    summary = json.loads((folder / "summary.json").read_text())
-    p = SailParameters(**summary["parameters"])
-    mesh = mesh_of(p)
-    per_shape = 6 * len(mesh.nodes) + len(FIELDS) * len(mesh.triangles) + len(mesh.creases)
-    shapes = thinned(list_series(folder / "shapes" / "film.pvd"), per_shape)
-    positions, data = zip(*[read_frame(path) for _, path in shapes])
+    run = read_run(folder)
+    triangles = len(run.triangles)
+    nodes = len(read_frame(run.shapes[0][1])[0])
+    per_shape = 6 * nodes + len(FIELDS) * triangles + len(run.creases)
+    shapes = thinned(run.shapes, per_shape)
+    positions, data = zip(*[_frame(path, nodes, triangles) for _, path in shapes])
     frames = np.array(positions)
-    creases = (mesh.triangles, mesh.creases, mesh.crease_signs)
+    times = [time for time, _ in shapes]
+    creases = (run.triangles, run.creases, run.crease_signs)
     angles = np.array([crease_angles(frame, *creases) for frame in frames])
     return {
         "name": name_of(folder),
-        "times": [time for time, _ in shapes],
+        "times": times,
+        "turned": run.turned(times).tolist(),
         "positions": _lengths(frames),
-        "triangles": _pack(mesh.triangles, np.uint32),
+        "triangles": _pack(run.triangles, np.uint32),
         "fields": [_field(data, *about) for about in FIELDS],
-        "creases": _pack(mesh.creases, np.uint32),
-        "creaseSigns": mesh.crease_signs.tolist(),
+        "creases": _pack(run.creases, np.uint32),
+        "creaseSigns": run.crease_signs.tolist(),
         "creaseAngles": _levels(np.degrees(angles), 0.0, 180.0),
-        "cables": _pack(mesh.cables, np.uint32),
-        "tips": mesh.tips.tolist(),
-        "spool": {"radius": p.spool_radius, "height": p.spool_height, "omega": p.omega},
-        **_curves(read_history(folder / "history.csv")),
-        "tables": [_measures(summary), _parameters(p)],
+        "cables": _pack(run.cables, np.uint32),
+        "tips": run.tips.tolist(),
+        "spool": run.spool and dict(zip(("radius", "height"), run.spool)),
+        **_curves(run.history),
+        "tables": [_measures(run.summary, nodes), _parameters(run.parameters)],
     }
+
+
+def _frame(path, nodes, triangles):
+    """Positions and FIELDS of a shape; BadFile if it is not one of this sail."""
+    positions, data = read_frame(path)
+    if len(positions) != nodes or not np.isfinite(positions).all():
+        raise BadFile(path, "", f"must hold {nodes} nodes at finite places")
+    for name, *_ in FIELDS:
+        if name not in data or len(data[name]) != triangles or not np.isfinite(data[name]).all():
+            raise BadFile(path, name, f"must be {triangles} finite values")
+    return positions, data
 
 
 def thinned(shapes, per_shape, largest=LARGEST):
@@ -193,30 +222,33 @@ def _curves(history):
     def shorten(values):
         return [float(f"{value:.6g}") for value in values]
 
-    curves = [
-        {
-            "label": label,
-            "unit": unit,
-            "lines": [
-                {
-                    "label": name,
-                    "minor": name.startswith("tip "),
-                    "values": shorten(factor * history[column]),
-                }
-                for column, name in lines
-            ],
-        }
-        for label, unit, factor, lines in CURVES
-    ]
+    curves = []
+    for label, unit, factor, lines in CURVES:
+        if lines[0][0] not in history:
+            continue
+        lines = [(column, name) for column, name in lines if column in history]
+        if unit in MILLI and max(np.abs(history[column]).max() for column, _ in lines) < 1:
+            unit, factor = MILLI[unit]
+        drawn = [
+            {
+                "label": name,
+                "minor": name.startswith("tip "),
+                "values": shorten(factor * history[column]),
+            }
+            for column, name in lines
+        ]
+        curves.append({"label": label, "unit": unit, "lines": drawn})
     return {"historyTimes": shorten(history["time"]), "curves": curves}
 
 
-def _measures(summary):
+def _measures(summary, nodes):
     """Table of the main measures."""
-    rows = [["nodes", str(summary["mesh"]["nodes"]), "-"]]
+    rows = [["nodes", str(nodes), "-"]]
+    found = summary.get("measures")
     for name, label, unit, factor in MEASURES:
-        value = summary["measures"][name]
-        rows.append([label, "never" if value is None else f"{factor * value:.4g}", unit])
+        value = found.get(name, False) if isinstance(found, dict) else False
+        if value is None or type(value) in (int, float):
+            rows.append([label, "never" if value is None else f"{factor * value:.4g}", unit])
     return {"title": "Measures", "head": ["measure", "value", "unit"], "rows": rows}
 
 

@@ -8,7 +8,7 @@ import { Plot } from "./plot.js";
 import { Stage } from "./stage.js";
 import { addTable } from "./tables.js";
 
-const SPEEDS = [1, 1 / 2, 1 / 4, 1 / 8, 1 / 16, 1 / 32];
+const SPEEDS = [64, 32, 16, 8, 4, 2, 1, 1 / 2, 1 / 4, 1 / 8, 1 / 16, 1 / 32];
 const PLAYED_IN = 8; // about as long as the run lasts on the screen at first [s]
 const PLAY = "M3 1.5v13l11-6.5z";
 const PAUSE = "M3 1.5h3.5v13H3zM9.5 1.5H13v13H9.5z";
@@ -92,7 +92,8 @@ function showFolds(visible) {
 
 /** Tells mountains from valleys where fold lines are drawn in these colours. */
 function showKey() {
-  page("lines-key").hidden = !page("folds").checked || stage?.field?.name === "crease_angle";
+  const plain = stage?.field?.name !== "crease_angle";
+  page("lines-key").hidden = !(page("folds").checked && plain && run.creases.length);
 }
 
 function addOptions(select, options) {
@@ -110,9 +111,13 @@ function setUpControls() {
   player.speed = SPEEDS.find((speed) => speed <= wanted) ?? SPEEDS.at(-1);
   addOptions(
     page("speed"),
-    SPEEDS.map((speed) => [speed < 1 ? `1/${1 / speed}` : "1", speed, speed === player.speed]),
+    SPEEDS.map((speed) => [speed < 1 ? `1/${1 / speed}` : `${speed}`, speed, speed === player.speed]),
   );
   page("speed").addEventListener("change", (event) => (player.speed = Number(event.target.value)));
+  if (!run.spool) {
+    page("corotate-name").textContent = "turn with the sail";
+    page("corotate-name").parentElement.title = "Show the sail as seen from a frame that turns as it does";
+  }
   addOptions(page("field"), [
     ["top and bottom", -1, true],
     ...run.fields.map(({ label }, i) => [label, i, false]),
@@ -175,9 +180,10 @@ function setUpKey() {
   }
 }
 
-document.title = `Sail deployment: ${run.name}`;
+document.title = `Sail: ${run.name}`;
 setUpControls();
 setUpKey();
+showKey();
 run.tables.forEach((table) => addTable(page("tables"), table));
 showState(false);
 player.show(0);

@@ -32,7 +32,7 @@ const ELEVATION = (32 * Math.PI) / 180; // of the first view, as in shapes.png
 const AZIMUTH = (-65 * Math.PI) / 180;
 const FIELD_OF_VIEW = 28; // degrees, of the shorter side of the picture
 const { clamp } = MathUtils;
-const TIP_RADIUS = 5e-3; // as drawn [m]; a tip mass has no size in the model
+const TIP_SIZE = 0.0155; // radius as drawn, over the sail's reach; a tip mass has no size in the model
 
 /** Lines between pairs of nodes, a few pixels wide. */
 class Segments {
@@ -96,8 +96,9 @@ export class Stage {
     this.cables = new Segments(run.cables, 1.6);
     this.cables.paint((i, colour) => colour.set(TETHER));
     this.sail.add(this.folds.object, this.cables.object);
+    this.measure();
     this.addMasses();
-    this.addSpool();
+    if (run.spool) this.addSpool();
     this.addCamera();
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.colourBy(null);
@@ -130,8 +131,18 @@ export class Stage {
     this.sail.add(...faces);
   }
 
+  /** Finds how far from the middle the sail gets [m]. */
+  measure() {
+    let far = 0;
+    for (let i = 0; i < this.run.positions.length; i += 3) {
+      const [x, y, z] = this.run.positions.subarray(i, i + 3);
+      far = Math.max(far, x * x + y * y + z * z);
+    }
+    this.reach = this.run.unit * Math.sqrt(far);
+  }
+
   addMasses() {
-    const ball = new SphereGeometry(TIP_RADIUS, 20, 12);
+    const ball = new SphereGeometry(TIP_SIZE * this.reach, 20, 12);
     const material = new MeshStandardMaterial({ roughness: 0.5 });
     const dark = matchMedia("(prefers-color-scheme: dark)");
     const suit = () => material.color.set(dark.matches ? TIP_ON_DARK : TIP);
@@ -159,12 +170,6 @@ export class Stage {
   }
 
   addCamera() {
-    let far = 0;
-    for (let i = 0; i < this.run.positions.length; i += 3) {
-      const [x, y, z] = this.run.positions.subarray(i, i + 3);
-      far = Math.max(far, x * x + y * y + z * z);
-    }
-    this.reach = this.run.unit * Math.sqrt(far);
     this.camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.02 * this.reach, 60 * this.reach);
     this.camera.up.set(0, 0, 1);
     this.ambient = new AmbientLight(0xffffff);
@@ -233,7 +238,7 @@ export class Stage {
   /** Shows shape number `frame`. */
   show(frame) {
     this.frame = frame;
-    const { positions, nodes, unit, times, spool } = this.run;
+    const { positions, nodes, unit, turned } = this.run;
     const first = 3 * nodes * frame;
     for (let i = 0; i < 3 * nodes; i++) this.positions[i] = unit * positions[first + i];
     const corners = this.film.attributes.position;
@@ -244,9 +249,8 @@ export class Stage {
     this.run.tips.forEach((node, i) => {
       this.tips[i].position.fromArray(this.positions, 3 * node);
     });
-    const turned = spool.omega * times[frame];
-    this.spool.rotation.z = turned;
-    this.sail.rotation.z = this.corotating ? -turned : 0;
+    if (this.spool) this.spool.rotation.z = turned[frame];
+    this.sail.rotation.z = this.corotating ? -turned[frame] : 0;
     this.paint();
     this.draw();
   }
