@@ -14,7 +14,7 @@ from pathlib import Path
 
 import membrane
 import numpy as np
-from membrane import sail, scene, spool
+from membrane import pattern_sail, sail, scene, spool
 from membrane.mesh import sail_mesh
 from membrane.output import read_history
 from membrane.parameters import SailParameters
@@ -277,6 +277,40 @@ def short_run():
     O.reset()
     folder = scratch() / "short_run"
     p = SailParameters(duration=0.1, shapes_interval=5e-3, spin_up_tolerance=1e-2)
+    with quiet():
+        sail.deploy(p, folder, pictures=False, page=False)
+    O.reset()
+    return folder
+
+
+@lru_cache(maxsize=None)
+def pattern_run():
+    """Output folder of a Miura-ori sheet that flies free for 20 ms, with 5 shapes."""
+    O.reset()
+    folder = scratch() / "pattern_run"
+    p = pattern_sail.PatternParameters(
+        size=0.0375, omega=60.0, duration=0.02, shapes_interval=5e-3, crease_law="conservative"
+    )
+    sheet = pattern_sail.read_sheet(ROOT / "scripts" / "patterns" / "miura.fold", p)
+    with quiet():
+        pattern_sail.fly(sheet, p, folder, pictures=False, page=False)
+    O.reset()
+    return folder
+
+
+@lru_cache(maxsize=None)
+def free_hub_run():
+    """Output folder of a run of 0.1 s on a light hub that turns freely, with 11 shapes."""
+    O.reset()
+    folder = scratch() / "free_hub_run"
+    p = SailParameters(
+        fold_lines=3,
+        inner_width=0.15,
+        hub_inertia=1e-5,
+        gravity=0.0,
+        duration=0.1,
+        spin_up_tolerance=1e-2,
+    )
     with quiet():
         sail.deploy(p, folder, pictures=False, page=False)
     O.reset()

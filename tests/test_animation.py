@@ -9,14 +9,15 @@ import signal
 import subprocess
 from time import sleep
 import unittest
+from dataclasses import replace
 from unittest import mock
 
 import numpy as np
 from membrane import animation
+from membrane.finished_run import read_run
 from membrane.mesh import sail_mesh
 from membrane.output import VtkSeries, list_series, read_frame
-from membrane.parameters import SailParameters
-from support import ROOT, CommandTest, scratch, short_run, yade_environment
+from support import ROOT, CommandTest, pattern_run, scratch, short_run, yade_environment
 
 MISSING = [program for program in ("Xvfb", "ffmpeg") if not shutil.which(program)]
 
@@ -42,11 +43,11 @@ def film(image):
 class TestPictures(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        shapes = list_series(short_run() / "shapes" / "film.pvd")
+        run = read_run(short_run())
         cls.addClassCleanup(mock.patch.stopall)
         mock.patch.object(animation, "SIZE", (640, 360)).start()
         with animation.virtual_display():
-            with contextlib.closing(animation.Stage(SailParameters(), shapes)) as stage:
+            with contextlib.closing(animation.Stage(run)) as stage:
                 cls.first, cls.again, cls.last = (stage.picture(i) for i in (0, 0, 20))
                 camera = stage.renderer.GetActiveCamera()
                 cls.pixels_per_metre = 360 / (2 * camera.GetParallelScale())
@@ -65,7 +66,8 @@ class TestPictures(unittest.TestCase):
             series.write(time, positions + [0, 0, lift])
         with animation.virtual_display():
             far = list_series(scratch() / "far" / "film.pvd")
-            with contextlib.closing(animation.Stage(SailParameters(), far)) as stage:
+            run = replace(read_run(short_run()), shapes=far)
+            with contextlib.closing(animation.Stage(run)) as stage:
                 pictures = [stage.picture(i) for i in range(2)]
         for image in pictures:
             self.assertGreater(film(image), 0.01)
@@ -73,6 +75,14 @@ class TestPictures(unittest.TestCase):
                 self.assertEqual(film(edge), 0)
         low, high = pictures
         self.assertEqual([film(low[:180]), film(high[180:])], [0, 0])
+
+    def test_sail_from_a_pattern_is_shown_without_a_spool(self):
+        with animation.virtual_display():
+            with contextlib.closing(animation.Stage(read_run(pattern_run()))) as stage:
+                picture = stage.picture(0)
+        self.assertGreater(film(picture), 0.01)
+        metal = np.all(np.abs(picture.astype(int) - [105, 112, 130]) < 12, axis=-1)
+        self.assertLess(np.mean(metal), 1e-3)
 
     def test_same_shape_gives_the_same_picture(self):
         np.testing.assert_array_equal(self.first, self.again)

@@ -8,6 +8,7 @@ import re
 import shutil
 import time
 import unittest
+from pathlib import Path
 from unittest import mock
 
 import numpy as np
@@ -17,7 +18,7 @@ from membrane.geometry import crease_angles
 from membrane.mesh import sail_mesh
 from membrane.output import list_series, read_frame, read_history
 from membrane.parameters import SailParameters
-from support import CommandTest, scratch, short_run
+from support import CommandTest, free_hub_run, pattern_run, scratch, short_run
 
 try:
     from selenium import webdriver
@@ -78,13 +79,15 @@ class TestReportData(unittest.TestCase):
 
     def test_fold_lines_come_with_their_signs_and_angles(self):
         mesh = self.mesh
-        np.testing.assert_array_equal(
-            unpacked(self.data["creases"], "<u4").reshape(-1, 2), mesh.creases
-        )
-        self.assertEqual(self.data["creaseSigns"], mesh.crease_signs.tolist())
+        pairs = unpacked(self.data["creases"], "<u4").reshape(-1, 2).tolist()
+        place = {tuple(sorted(pair)): i for i, pair in enumerate(pairs)}
+        order = [place[tuple(sorted(pair))] for pair in mesh.creases.tolist()]
+        self.assertEqual(sorted(order), list(range(len(pairs))))
+        signs = np.array(self.data["creaseSigns"])[order]
+        self.assertEqual(signs.tolist(), mesh.crease_signs.tolist())
         last, _ = read_frame(self.shapes[-1][1])
         true = np.degrees(crease_angles(last, mesh.triangles, mesh.creases, mesh.crease_signs))
-        held = self.levels(self.data["creaseAngles"])[-1]
+        held = self.levels(self.data["creaseAngles"])[-1][order]
         self.assertGreater(np.ptp(held), 90)
         self.assertLess(np.abs(held - np.clip(true, 0, 180)).max(), 0.4)
 
@@ -112,6 +115,78 @@ class TestReportData(unittest.TestCase):
             report.thinned(list(range(20)), 100, largest=700), [1, 4, 7, 10, 13, 16, 19]
         )
         self.assertEqual(report.thinned(list(range(21)), 100, largest=1), [9, 20])
+
+
+class TestOtherRuns(unittest.TestCase):
+    def labels(self, data):
+        """Of the curves, and of the measures."""
+        return [curve["label"] for curve in data["curves"]], [
+            row[0] for row in data["tables"][0]["rows"]
+        ]
+
+    def test_sail_from_a_pattern_has_its_own_curves_and_no_spool(self):
+        data = report.run_data(pattern_run())
+        curves, measures = self.labels(data)
+        self.assertEqual(curves, ["area over flat area", "crease angle", "spin", "energy"])
+        self.assertIn("spin at the end", measures)
+        self.assertIsNone(data["spool"])
+        self.assertEqual(len(data["tips"]), 4)
+        self.assertEqual(len(data["times"]), 5)
+        # It begins at 60 rad/s and slows down as it opens.
+        turned = np.array(data["turned"])
+        self.assertEqual(turned[0], 0)
+        self.assertTrue((np.diff(turned) > 0).all())
+        self.assertTrue(0.5 * 60 * 0.02 < turned[-1] < 60 * 0.02, turned)
+
+    def test_free_hub_turns_as_it_did(self):
+        data = report.run_data(free_hub_run())
+        self.assertIn("hub", self.labels(data)[0])
+        history = read_history(free_hub_run() / "history.csv")
+        spins = (history["hub_spin"][1:] + history["hub_spin"][:-1]) / 2
+        turned = np.append(0, np.cumsum(spins * np.diff(history["time"])))
+        expected = np.interp(data["times"], history["time"], turned)
+        np.testing.assert_allclose(data["turned"], expected, atol=1e-3)
+        steady = SailParameters().omega * np.array(data["times"])
+        self.assertGreater(np.abs(expected - steady).max(), 0.05)
+
+    def test_damaged_results_are_refused_with_the_name_of_the_file(self):
+        summary = json.loads((short_run() / "summary.json").read_text())
+        other = {**summary, "parameters": {**summary["parameters"], "fold_lines": 3}}
+        history = (short_run() / "history.csv").read_text()
+        film = (short_run() / "shapes" / "film.pvd").read_text()
+        shape = (short_run() / "shapes" / "film_000003.vtu").read_bytes()
+        line = next(line for line in film.splitlines() if "film_000001" in line)
+        for name, content in (
+            ("summary.json", "{}"),
+            ("summary.json", "[]"),
+            ("summary.json", '{"parameters": null}'),
+            ("summary.json", '{"parameters": {"unit": 1}}'),
+            ("summary.json", json.dumps(summary)[:200]),
+            ("summary.json", json.dumps(other)),
+            ("history.csv", history[:-10]),
+            ("history.csv", history.splitlines()[0] + "\n"),
+            ("history.csv", history.replace("time", "tame", 1)),
+            ("shapes/film.pvd", film[:200]),
+            ("shapes/film.pvd", film.replace(line, "", 1).replace("DataSet", "Other")),
+            ("shapes/film.pvd", film.replace('timestep="0.0"', 'timestep="nan"', 1)),
+            ("shapes/film.pvd", film.replace("film_000001", "../film_000001", 1)),
+            ("shapes/film.pvd", film.replace("film_000001", "sides_000001", 1)),
+            ("shapes/film_000003.vtu", shape[: len(shape) // 2]),
+            ("shapes/sides_000000.vtu", shape),
+        ):
+            folder = scratch() / "damaged"
+            shutil.rmtree(folder, ignore_errors=True)
+            shutil.copytree(short_run(), folder)
+            data = content if isinstance(content, bytes) else content.encode()
+            self.assertNotEqual(data, (folder / name).read_bytes())
+            (folder / name).write_bytes(data)
+            with self.subTest(name=name, content=content[:60]):
+                with self.assertRaises((ValueError, OSError)) as caught:
+                    report.run_data(folder)
+                said = str(caught.exception)
+                wanted = "sides_000001" if "sides_000001" in str(content) else Path(name).name
+                self.assertIn(wanted, said)
+                self.assertEqual(len(said.splitlines()), 1)
 
 
 class TestReportWithoutViewer(unittest.TestCase):

@@ -124,7 +124,10 @@ def _parameters(file, values):
 
 def _paper_tips(file, p, nodes):
     """Tips of the paper's sail, which must have so many nodes."""
-    mesh = mesh_of(p)
+    try:
+        mesh = mesh_of(p)
+    except ValueError as error:
+        raise BadFile(file, "parameters", str(error)) from None
     if len(mesh.nodes) != nodes:
         raise BadFile(
             file, "parameters", f"are of {len(mesh.nodes)} nodes; the shapes have {nodes}"
