@@ -90,8 +90,8 @@ def check(config):
     grid = TABLE_2_CASES if own is None else own
     for name in config.get("options") or {}:
         if name in grid:
-            where = "the grid" if own else "the grid of Table 2, there being no other,"
-            raise ValueError(f"options: {name} is in {where} too: must be in one of them")
+            which = "" if own else " (Table 2, since none is given)"
+            raise ValueError(f"options: {name} is in the grid, too{which}: must be in one of them")
     cases = [dict(zip(grid, values)) for values in product(*grid.values())]
     return {case_name(case): case for case in cases}
 
