@@ -348,8 +348,7 @@ workflow)
     need "${sweep_packages[@]}" "${workflow_packages[@]}"
     compile
     set_environment
-    (($#)) || set -- --cores all
-    exec snakemake --snakefile "$root/scripts/workflow/Snakefile" --rerun-incomplete "$@"
+    exec python3 "$root/scripts/workflow.py" "$@"
     ;;
 calibrate)
     need "${calibrate_packages[@]}"

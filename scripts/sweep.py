@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 
 import sweeping  # noqa: F401  (makes parts of membrane importable without YADE)
-from membrane.case_folder import COMPLETE, DIVERGED
+from membrane.case_folder import COMPLETE, DAMAGED, DIVERGED
 from membrane.commands import plain_errors
 from membrane.parameters import (
     TABLE_2_CASES,
@@ -70,6 +70,7 @@ def main():
         setattr(arguments, name, getattr(SailParameters(), name))
     cases = grid.grid(from_arguments(arguments), **axes)
     folder = arguments.out.absolute()
+    grid.refuse_other_results(folder)
     signal.signal(signal.SIGTERM, lambda *_: sys.exit("sweep: terminated"))  # ends the jobs, too
     with batch.alone(folder):
         grid.plan(folder, cases)
@@ -90,7 +91,7 @@ def tell(line):
 
 
 def tell_report(folder):
-    """Write the report and say what it says; returns 1 if a case is missing."""
+    """Write the report and say what it says; returns 1 if a case is missing or damaged."""
     found = report(folder)
     states = [status.state for status in found]
     complete, diverged = states.count(COMPLETE), states.count(DIVERGED)
@@ -99,6 +100,8 @@ def tell_report(folder):
         if status.state == DIVERGED:
             when = "in the spin-up" if status.time is None else f"at {status.time:.4g} s"
             print(f"  {status.name} diverged {when}, because: {status.reason}")
+        elif status.state == DAMAGED:
+            print(f"  {status.name} is damaged: {status.reason}")
         elif status.state != COMPLETE:
             print(f"  {status.name} is missing ({status.state}): {status.reason}")
     print(f"Look at {folder / 'report.html'}")

@@ -5,6 +5,7 @@ import csv
 import json
 import os
 import random
+import resource
 import shutil
 import signal
 import subprocess
@@ -17,8 +18,20 @@ from pathlib import Path
 
 import numpy as np
 from membrane import sail
-from membrane.case_folder import DIVERGED, FAILED, KILLED, MISSING, SAVED, look, part_of
-from membrane.output import read_history
+from membrane.case_folder import (
+    COMPLETE,
+    DAMAGED,
+    DIVERGED,
+    FAILED,
+    KILLED,
+    MISSING,
+    SAVED,
+    look,
+    part_of,
+)
+from membrane.files import replacing, write_json
+from membrane.history import read_history
+from membrane.output import HistoryWriter
 from membrane.parameters import TABLE_2_CASES, SailParameters
 from support import ROOT, long, scratch, yade_environment
 from yade import utils
@@ -288,6 +301,32 @@ class TestSweep(SweepTest):
         self.same(self.folder, folder)
         self.assertEqual({path: path.stat().st_mtime_ns for path in kept.rglob("*")}, before)
 
+    def test_damaged_case_is_told_and_left_as_it_is(self):
+        folder = scratch() / "damaged_sweep"
+        shutil.copytree(self.folder, folder, symlinks=True)
+        lost, hurt = sorted((folder / "cases").iterdir())
+        shutil.rmtree(lost)
+        os.truncate(hurt / "history.csv", 1000)
+        before = tree(hurt)
+        process = start_sweep(folder, *self.OPTIONS)
+        said, _ = process.communicate()
+        self.assertEqual(process.returncode, 1, said)
+        self.assertRegex(
+            said, f"sweep: {hurt}/history.csv: .* cut off; the case is damaged: remove {hurt}, "
+        )
+        self.assertIn(f"{hurt.name} is damaged: ", said)
+        self.assertIn("1 of 2 cases are complete, 0 diverged.", said)
+        self.assertEqual(tree(hurt), before)
+        process = start_case(hurt, *SHORT, "--alpha-crease", "100", "--beta", "3")
+        said, _ = process.communicate()
+        self.assertNotEqual(process.returncode, 0)
+        self.assertRegex(said, "case: .*history.csv: .* is cut off; the case is damaged: remove ")
+        shutil.rmtree(hurt)
+        process = start_sweep(folder, *self.OPTIONS)
+        said, _ = process.communicate()
+        self.assertEqual(process.returncode, 0, said)
+        self.same(self.folder, folder)
+
     def test_other_options_in_the_same_folder_are_refused(self):
         process = start_sweep(self.folder, *self.OPTIONS, "--zeta", "0.5")
         said, _ = process.communicate()
@@ -296,10 +335,110 @@ class TestSweep(SweepTest):
         self.assertNotIn("Traceback", said)
 
 
+def changed(path, change):
+    """Rewrite a JSON file of an object: `change` is called with it."""
+    content = json.loads(path.read_text())
+    change(content)
+    path.write_text(json.dumps(content))
+
+
+def without(name):
+    """What changes a JSON file of a case so that it lacks a name."""
+    return lambda folder: changed(folder / "case.json", lambda content: content.pop(name))
+
+
+def given(name, value):
+    """What changes a JSON file of a case so that it gives a name another value."""
+    return lambda folder: changed(folder / "case.json", lambda c: c.update({name: value}))
+
+
+def filled(name, text):
+    """What gives a file of a case another text."""
+    return lambda folder: (folder / name).write_text(text)
+
+
+def header(folder):
+    """Take all rows from the history of a case."""
+    path = folder / "history.csv"
+    path.write_text(path.read_text().partition("\n")[0] + "\n")
+
+
+def second_value(text):
+    """What replaces the time in the second row of a history."""
+
+    def damage(folder):
+        lines = (folder / "history.csv").read_text().splitlines(keepends=True)
+        lines[2] = text + lines[2][lines[2].index(",") :]
+        (folder / "history.csv").write_text("".join(lines))
+
+    return damage
+
+
+def unnamed(folder):
+    """Rename a column of the history of a case."""
+    path = folder / "history.csv"
+    path.write_text(path.read_text().replace("deployment_rate", "rate", 1))
+
+
+# How a finished case is damaged, and parts of what must be said of it.
+DAMAGES = {
+    "history empty": (filled("history.csv", ""), "history.csv: is empty"),
+    "history missing": (lambda f: (f / "history.csv").unlink(), "history.csv: is missing"),
+    "history without rows": (header, "history.csv: has no row"),
+    "history with nan": (second_value("nan"), "history.csv: line 3, time: is 'nan'"),
+    "history with inf": (second_value("inf"), "history.csv: line 3, time: is 'inf'"),
+    "history goes back": (second_value("-1"), "history.csv: line 3, time"),
+    "history cut": (lambda f: os.truncate(f / "history.csv", 3000), "history.csv: line"),
+    "history without a column": (unnamed, "history.csv: line 1: names no column deployment_rate"),
+    "result missing": (lambda f: (f / "case.json").unlink(), "case.json: is missing"),
+    "result a folder": (
+        lambda f: ((f / "case.json").unlink(), (f / "case.json").mkdir()),
+        "case.json",
+    ),
+    "result cut": (lambda f: os.truncate(f / "case.json", 40), "case.json: line "),
+    "result {}": (filled("case.json", "{}"), "case.json: outcome"),
+    "result []": (filled("case.json", "[]"), "case.json: must hold an object"),
+    "result of one name": (filled("case.json", '{"outcome": "complete"}'), "case.json: parameters"),
+    "no versions": (without("versions"), "case.json: versions"),
+    "another outcome": (given("outcome", "splendid"), "case.json: outcome: is 'splendid'"),
+    "parameters a list": (given("parameters", [1]), "case.json: parameters: must be an object"),
+    "a parameter a list": (given("parameters", {"beta": [3]}), "case.json: parameters.beta"),
+    "a parameter out of range": (given("parameters", {"beta": -3}), "beta = -3 must be >= 0"),
+    "diverged without a reason": (given("outcome", "diverged"), "case.json: reason"),
+    "diverged at no time": (
+        lambda f: changed(
+            f / "case.json", lambda c: c.update(outcome="diverged", reason="", time="soon")
+        ),
+        "case.json: time: is 'soon'",
+    ),
+}
+
+
+@lru_cache(maxsize=None)
+def two_cases():
+    """Folder of a planned sweep of two cases with curves of a swing, without running them."""
+    folder = scratch() / "two_cases"
+    cases = grid.grid(SailParameters(duration=0.1), [10.0, 100.0], [3.0])
+    grid.plan(folder, cases)
+    for name, p in cases.items():
+        place = folder / grid.CASES / name
+        place.mkdir()
+        write_json(
+            place / "case.json",
+            {"outcome": COMPLETE, "parameters": p.as_dict(), "versions": {"yade": "2023.02a"}},
+        )
+        units = {"time": "s", "deployment_rate": "-", "phase_difference": "rad"}
+        with HistoryWriter(place / "history.csv", units) as history:
+            for now in np.linspace(0, p.duration, 101).tolist():
+                swing = -np.sin(50 * now) * p.alpha_crease / 100
+                history.write({"time": now, "deployment_rate": 10 * now, "phase_difference": swing})
+    return folder
+
+
 class TestReport(SweepTest):
     """What is there and what is missing, without YADE."""
 
-    def report(self, folder):
+    def report(self, folder, **options):
         """Exit status and output of `sweep.py report`, where no yade can be imported."""
         blocked = scratch() / "no_yade"
         (blocked / "yade").mkdir(parents=True, exist_ok=True)
@@ -309,8 +448,128 @@ class TestReport(SweepTest):
             env={"PATH": os.environ["PATH"], "PYTHONPATH": str(blocked)},
             capture_output=True,
             text=True,
+            **options,
         )
         return done.returncode, done.stdout + done.stderr
+
+    def copy(self, name):
+        """A new copy of two_cases() and the folder of its first case."""
+        folder = scratch() / name
+        shutil.copytree(two_cases(), folder)
+        return folder, folder / grid.CASES / "alpha_crease_10-beta_3"
+
+    def refused(self, folder, *parts):
+        """`sweep.py report` and `sweep.py run` end by one sentence and change nothing."""
+        before = tree(folder)
+        status, said = self.report(folder)
+        self.assertEqual(status, 1)
+        self.assertEqual(len(said.splitlines()), 1, said)
+        for part in ("sweep: ", *parts):
+            self.assertIn(part, said)
+        self.assertEqual(tree(folder), before)
+
+    def test_damaged_case_is_reported_and_the_other_as_usual(self):
+        whole, _ = self.copy("undamaged")
+        status, said = self.report(whole)
+        self.assertEqual(
+            (status, said.splitlines()[0]), (0, "2 of 2 cases are complete, 0 diverged.")
+        )
+        usual = (whole / "cases.csv").read_text().splitlines()[2]
+        for number, (what, (damage, reason)) in enumerate(DAMAGES.items()):
+            with self.subTest(what):
+                folder, case = self.copy(f"damaged_{number}")
+                damage(case)
+                self.assertEqual(look(case).state, DAMAGED)
+                status, said = self.report(folder)
+                self.assertEqual(status, 1, said)
+                first, told, last = said.splitlines()
+                self.assertEqual(first, "1 of 2 cases are complete, 0 diverged.")
+                self.assertTrue(told.startswith(f"  {case.name} is damaged: "), told)
+                self.assertIn(f"{case}/", told)
+                self.assertIn(reason, told)
+                rows = (folder / "cases.csv").read_text().splitlines()
+                self.assertEqual(rows[2], usual)
+                with open(folder / "cases.csv", newline="") as file:
+                    row = next(csv.DictReader(file))
+                self.assertEqual((row["case"], row["outcome"]), (case.name, DAMAGED))
+                self.assertIn(reason, row["reason"])
+                self.assertEqual(row["final_rate"], "")
+                page = (folder / "report.html").read_text()
+                self.assertIn("1 damaged", page)
+                self.assertIn('"deployment_rate.png"', page)
+
+    def test_damaged_files_of_an_unfinished_case_do_not_end_the_report(self):
+        for number, text in enumerate(("", "[1]", "{}", '{"reason": 3}', '{"parameters": [1]}')):
+            with self.subTest(text):
+                folder, case = self.copy(f"unfinished_{number}")
+                shutil.rmtree(case)
+                part = part_of(case)
+                part.mkdir()
+                (part / "begun.json").write_text(text)
+                (part / "failure.json").write_text(text)
+                status, said = self.report(folder)
+                self.assertEqual(status, 1)
+                self.assertRegex(said, f"{case.name} is missing")
+                self.assertNotIn("Traceback", said)
+
+    def test_damaged_plan_is_a_sentence(self):
+        plans = {
+            "": "is empty",
+            '{"cases"': "is no JSON",
+            "[1]": "must hold an object",
+            "{}": "cases: must be an object",
+            '{"cases": [1]}': "cases: must be an object, not a list of 1",
+            '{"cases": {"a": [1]}}': "cases.a: must be an object",
+            '{"cases": {"../a": {}}}': "cases.../a: is no name of a folder",
+            '{"cases": {"a": {"beta": "x"}}}': "cases.a: beta = 'x' must be a number",
+        }
+        for number, (text, reason) in enumerate(plans.items()):
+            with self.subTest(text):
+                folder, _ = self.copy(f"plan_{number}")
+                (folder / "sweep.json").write_text(text)
+                self.refused(folder, f"{folder}/sweep.json: ", reason)
+
+    def test_results_of_a_single_run_are_not_written_over(self):
+        folder = scratch() / "single"
+        shutil.copytree(two_cases() / grid.CASES, folder / "long")  # cases within it, too
+        for name in ("summary.json", "report.html", "history.csv"):
+            (folder / name).write_text("of the run\n")
+        self.refused(folder, f"{folder}/summary.json ")
+        before = tree(folder)
+        process = start_sweep(folder, *SHORT)
+        said, _ = process.communicate()
+        self.assertEqual(process.returncode, 1)
+        self.assertRegex(said, f"^sweep: {folder}/summary.json .*\n$")
+        self.assertEqual(tree(folder), before)
+
+    def test_full_disk_keeps_the_earlier_report(self):
+        folder, _ = self.copy("full")
+        self.report(folder)
+        before = tree(folder)
+        self.assertGreater(len(before["deployment_rate.png"]), 10_000)
+
+        def no_space():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (6000, 6000))
+
+        status, said = self.report(folder, preexec_fn=no_space)
+        self.assertEqual(status, 1)
+        self.assertRegex(said, f"(?m)^sweep: .*{folder}/deployment_rate.png")
+        self.assertNotIn("Traceback", said)
+        self.assertEqual(tree(folder), before)
+
+    def test_file_is_replaced_whole_or_not_at_all(self):
+        path = scratch() / "replaced.txt"
+        path.write_text("old")
+        with self.assertRaises(ZeroDivisionError):
+            with replacing(path) as part:
+                part.write_text("half of the n")
+                1 / 0
+        self.assertEqual(path.read_text(), "old")
+        self.assertFalse(part.exists())
+        with replacing(path) as part:
+            part.write_text("new")
+        self.assertEqual(path.read_text(), "new")
+        self.assertFalse(part.exists())
 
     def test_holes_are_told_with_their_reasons(self):
         folder = scratch() / "holes"

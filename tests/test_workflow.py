@@ -11,7 +11,7 @@ import time
 import unittest
 
 from slurm import Slurm
-from support import ROOT, long, scratch, yade_environment
+from support import ROOT, CommandTest, long, scratch, yade_environment
 
 sys.path.append(str(ROOT / "scripts"))
 FOLDER = ROOT / "scripts" / "workflow"
@@ -83,6 +83,103 @@ class TestPlan(unittest.TestCase):
         self.assertEqual(folders, CASES)
         # Snakemake cuts what it hands to the job of a case at commas.
         self.assertNotIn(",", "".join(folders))
+
+
+# What a file of configuration holds, and parts of what must be said of it.
+BAD = {
+    "": "is empty",
+    "[1]": "must hold names with values",
+    "grid: [": "line 1, column 8: is no YAML",
+    "when: 2020-13-45": "is no YAML",
+    "grid: [1]": "grid: must be parameters with lists of values",
+    "grid: {}": "grid: must be parameters with lists of values",
+    "grid: {beta: 3}": "grid: beta must be a list of values, not 3",
+    "grid: {beta: []}": "grid: beta must be a list of values",
+    "grid: {beta: [3, 3.0]}": "grid: beta: a value is given twice",
+    "grid: {beta: [-3]}": "grid: beta = -3.0 must be >= 0",
+    "grid: {beta: [.nan]}": "grid: beta = nan must be >= 0",
+    "grid: {beta: [[3]]}": "grid: beta = a list of 1 must be a number",
+    "grid: {bta: [3]}": "grid: bta is no parameter",
+    "gird: {beta: [3]}": "gird is nothing to configure",
+    "options: 3": "options: must be names with values, not 3",
+    "options: {bta: 3}": "options: bta is no parameter",
+    "options: {fold_lines: 3.5}": "options: fold_lines = 3.5 must be a whole number",
+    "options: {zeta: yes}": "options: zeta = True must be a number",
+    "options: {crease_law: mine}": "options: crease_law = 'mine' must be one of paper, ",
+    "options: {force_time_step: 1}": "options: force_time_step = 1 must be true or false",
+    "options: {checkpoint_every: -1}": "options: checkpoint_every = -1 s must be >= 0",
+    "threads: many": "threads = 'many' must be a whole number >= 1",
+    "memory: 0": "memory = 0 must be a whole number >= 1",
+    "minutes: 1.5": "minutes = 1.5 must be a whole number >= 1",
+    "out: 3": "out = 3 must be the name of a folder",
+    "out: '{case}'": "out = '{case}' must be the name of a folder",
+}
+
+
+class TestBadConfiguration(CommandTest):
+    """Each is refused before any job."""
+
+    def start(self, folder, *options):
+        """`scripts/workflow.py` in a folder; it may run, not only plan."""
+        return subprocess.run(
+            ["/usr/bin/python3", str(ROOT / "scripts" / "workflow.py"), "--cores", "1", *options],
+            cwd=folder,
+            env=yade_environment(),
+            capture_output=True,
+            text=True,
+        )
+
+    def test_bad_file_is_one_sentence(self):
+        folder = new_folder("bad_file")
+        for content, reason in BAD.items():
+            with self.subTest(content):
+                (folder / "bad.yaml").write_text(content)
+                done = self.start(folder, "--configfile", "tiny.yaml", "bad.yaml", "--dry-run")
+                self.ends_with_one_sentence(done, "workflow", "workflow: bad.yaml: ", reason)
+                self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        self.assertEqual(sorted(os.listdir(folder)), ["bad.yaml", "tiny.yaml"])
+
+    def test_missing_file_is_one_sentence(self):
+        done = self.start(new_folder("no_file"), "--configfile=nowhere.yaml")
+        self.ends_with_one_sentence(done, "workflow", "nowhere.yaml")
+
+    def test_what_the_command_line_configures_is_checked_too(self):
+        folder = new_folder("command_line")
+        bad = {
+            "grid=3": "config: grid: must be parameters",
+            "threads=many": "config: threads = 'many' must be",
+            "options={zeta: x}": "config: options: zeta = 'x' must be a number",
+            "options={beta: 3}": "config: options: beta is in the grid, too",
+            "options={parameters: nowhere.json}": "nowhere.json",
+        }
+        for option, reason in bad.items():
+            with self.subTest(option):
+                done = self.start(folder, "--config", option)
+                self.assertEqual(done.returncode, 1, done.stderr)
+                self.assertIn(reason, done.stderr)
+                self.assertIn("WorkflowError", done.stderr)
+                self.assertNotIn("Traceback", done.stderr)
+                self.assertFalse((folder / "out").exists())
+
+    def test_results_of_a_single_run_are_not_written_over(self):
+        folder = new_folder("single_run")
+        (folder / "results").mkdir()
+        for name in ("summary.json", "report.html"):
+            (folder / "results" / name).write_text("of the run\n")
+        done = self.start(folder, "--configfile", "tiny.yaml")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("results/summary.json is a single run's", done.stderr)
+        self.assertEqual((folder / "results" / "report.html").read_text(), "of the run\n")
+
+    def test_numbers_as_yaml_takes_them_for_texts_are_values(self):
+        folder = new_folder("texts")
+        content = "grid: {beta: [1e1]}\noptions: {duration: 1e-2, no_pictures: true}\n"
+        (folder / "mine.yaml").write_text(content)
+        done = self.start(folder, "--configfile", "mine.yaml", "--dry-run", "--printshellcmds")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        lines = [line for line in done.stdout.splitlines() if line.startswith("yade ")]
+        self.assertEqual(len(lines), 1, done.stdout)
+        self.assertIn("--duration=1e-2 --no-pictures --beta=1e1 ", lines[0])
 
 
 class TestProfile(unittest.TestCase):

@@ -2,12 +2,22 @@
 """Folders of cases: names of their files, and what has become of a case. Needs no YADE."""
 
 import fcntl
-import json
-from dataclasses import dataclass, field
+import sys
+from dataclasses import dataclass, field, fields
 from pathlib import Path
+
+import numpy as np
+
+from .files import BadFile, read_object, shown
+from .history import read_history
+from .parameters import SailParameters
 
 COMPLETE, DIVERGED = "complete", "diverged"  # outcomes: the case is finished
 FAILED, KILLED, RUNNING, MISSING = "failed", "killed", "running", "not begun"
+DAMAGED = "damaged"  # there is a result, which cannot be used
+
+HISTORY = "history.csv"
+CURVES = ("time", "deployment_rate", "phase_difference")  # columns that it must have
 
 RESULT = "case.json"  # what came of the case
 FAILURE = "failure.json"  # in the folder NAME.part: why there is none
@@ -37,20 +47,110 @@ def finished(folder, wanted=None):
 
     Raises
     ------
+    Damaged
+        If it holds no case, or one that is not whole.
     ValueError
-        If it holds no case, or one of other parameters.
+        If it holds one of other parameters.
     """
     if not folder.exists():
         return None
     try:
-        found = json.loads((folder / RESULT).read_text())
-    except FileNotFoundError:
-        raise ValueError(f"{folder} is there already and holds no case") from None
-    for name in sorted({*wanted, *found["parameters"]} if wanted else ()):
-        was, now = found["parameters"].get(name), wanted.get(name)
+        found = _result(folder)
+        _compare(folder, found["parameters"], wanted)
+        _curves(folder, found)
+    except (BadFile, OSError) as error:
+        raise Damaged(f"{error}; {advice(folder)}") from None
+    return found
+
+
+class Damaged(ValueError):
+    """A folder that should hold a finished case, and does not."""
+
+
+def advice(folder):
+    """What the user can do about a damaged case."""
+    return f"the case is damaged: remove {folder}, and the same command runs it again"
+
+
+def _compare(folder, parameters, wanted):
+    """Raise ValueError if the parameters of the case of a folder are not those `wanted`."""
+    for name in sorted({*wanted, *parameters} if wanted else ()):
+        was, now = parameters.get(name), wanted.get(name)
         if was != now:
             raise ValueError(f"{folder} holds another case: {name} = {was}, not {now}")
+
+
+def _result(folder):
+    """What is in the case.json of a folder; BadFile or OSError if that cannot be a result."""
+    path = folder / RESULT
+    if not path.exists():
+        raise BadFile(path, "", "is missing")
+    found = read_object(path)
+    outcome = found.get("outcome")
+    if outcome not in (COMPLETE, DIVERGED):
+        raise BadFile(path, "outcome", f"is {shown(outcome)}; must be {COMPLETE} or {DIVERGED}")
+    check_parameters(path, "parameters", found.get("parameters"))
+    if not isinstance(found.get("versions"), dict):
+        raise BadFile(path, "versions", f"must be an object, not {shown(found.get('versions'))}")
+    if outcome == DIVERGED:
+        time, reason = found.get("time"), found.get("reason")
+        if not (time is None or _is_number(time)):
+            raise BadFile(path, "time", f"is {shown(time)}; must be a number or null")
+        if not isinstance(reason, str):
+            raise BadFile(path, "reason", f"is {shown(reason)}; must be a text")
     return found
+
+
+def _curves(folder, found):
+    """The history.csv of a case with this case.json; None if it diverged before the first row.
+
+    Raises
+    ------
+    BadFile or OSError
+        If it is not whole.
+    """
+    path = folder / HISTORY
+    is_complete = found["outcome"] == COMPLETE
+    if not path.exists():
+        if is_complete:
+            raise BadFile(path, "", "is missing")
+        return None
+    history = read_history(path)
+    for name in CURVES:
+        if name not in history:
+            raise BadFile(path, "line 1", f"names no column {name}")
+    if np.any(np.diff(history["time"]) <= 0):
+        row = int(np.argmax(np.diff(history["time"]) <= 0)) + 1
+        raise BadFile(path, f"line {row + 2}, time", "must be later than in the line before")
+    if len(history["time"]):
+        return history
+    if is_complete:
+        raise BadFile(path, "", "has no row")
+    return None
+
+
+def check_parameters(path, place, values):
+    """Raise BadFile unless `values`, of a `place` in a file, can be parameters of a case.
+
+    Names of another version are let pass.
+    """
+    if not isinstance(values, dict):
+        raise BadFile(path, place, f"must be an object, not {shown(values)}")
+    for name, value in values.items():
+        if not (isinstance(value, (bool, str)) or _is_number(value)):
+            where = f"{place}.{shown(name)[1:-1]}"
+            raise BadFile(path, where, f"is {shown(value)}; must be a number or a text")
+    known = {item.name for item in fields(SailParameters)}
+    try:
+        SailParameters(**{name: value for name, value in values.items() if name in known})
+    except ValueError as error:
+        raise BadFile(path, place, str(error)) from None
+
+
+def _is_number(value):
+    """Whether a value from JSON is a number that a float can be."""
+    is_real = isinstance(value, (int, float)) and not isinstance(value, bool)
+    return is_real and abs(value) <= sys.float_info.max
 
 
 @dataclass
@@ -62,7 +162,7 @@ class Status:
     folder : Path
         Of the case, be it there or not.
     state : str
-        COMPLETE, DIVERGED, FAILED, KILLED, RUNNING or MISSING.
+        COMPLETE, DIVERGED, FAILED, KILLED, RUNNING, MISSING or DAMAGED.
     reason : str
         Why, unless it is complete.
     parameters : dict
@@ -71,6 +171,8 @@ class Status:
         Of what it was made with.
     time : float or None
         When it diverged, after the release [s]; None if before.
+    history : dict of (S,) float or None
+        Columns of the history.csv of a finished case, by name; None where there are no rows.
     """
 
     folder: Path
@@ -79,6 +181,7 @@ class Status:
     parameters: dict = field(default_factory=dict)
     versions: dict = field(default_factory=dict)
     time: float | None = None
+    history: dict | None = None
 
     @property
     def name(self):
@@ -94,30 +197,52 @@ class Status:
 def look(folder):
     """The Status of the case of a folder."""
     folder = Path(folder)
-    found = finished(folder)
-    if found:
-        about = found["parameters"], found["versions"], found.get("time")
-        return Status(folder, found["outcome"], found.get("reason", ""), *about)
+    if folder.exists():
+        return _look_at_result(folder)
     part = part_of(folder)
     if not part.is_dir():
         return Status(folder, MISSING, "it has not been run yet")
-    about = _read(part / BEGUN)
-    about = about.get("parameters", {}), about.get("versions", {})
+    about = _begun(part / BEGUN)
     failure = _read(part / FAILURE)
     if _locked(part / LOCK):
         return Status(folder, RUNNING, "it is still running", *about)
     if failure:
-        return Status(folder, FAILED, failure["reason"], *about)
+        reason = failure.get("reason")
+        return Status(folder, FAILED, reason if isinstance(reason, str) else "unknown", *about)
     saved = "it will go on from its last checkpoint" if (part / SAVED).is_dir() else ""
     reason = "it was stopped from outside" + (f"; {saved}" if saved else "")
     return Status(folder, KILLED, reason, *about)
 
 
-def _read(path):
-    """A JSON file's content; {} if there is none."""
+def _look_at_result(folder):
+    """The Status of a case whose folder is there."""
+    about = {}, {}
     try:
-        return json.loads(path.read_text())
-    except (FileNotFoundError, ValueError):
+        found = _result(folder)
+        about = found["parameters"], found["versions"]
+        history = _curves(folder, found)
+    except (BadFile, OSError) as error:
+        return Status(folder, DAMAGED, str(error), *about)
+    outcome, reason, time = (found.get(name) for name in ("outcome", "reason", "time"))
+    return Status(folder, outcome, reason or "", *about, time, history)
+
+
+def _begun(path):
+    """Parameters and versions of a case that is not finished; {} where nobody knows."""
+    begun = _read(path)
+    parameters, versions = begun.get("parameters"), begun.get("versions")
+    try:
+        check_parameters(path, "parameters", parameters)
+    except BadFile:
+        parameters = {}
+    return parameters, versions if isinstance(versions, dict) else {}
+
+
+def _read(path):
+    """The object in a JSON file; {} if there is none."""
+    try:
+        return read_object(path)
+    except (FileNotFoundError, BadFile):
         return {}
 
 

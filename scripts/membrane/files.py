@@ -8,6 +8,7 @@ a file that cannot be opened at all is an OSError.
 import json
 import math
 import os
+from contextlib import contextmanager
 from pathlib import Path
 
 LARGEST = 256 * 2**20  # bytes; ten million nodes fill about as much
@@ -110,12 +111,30 @@ def read_object(path, largest=LARGEST):
     return found
 
 
-def replace_text(path, text):
-    """Write a text file so that readers see either the old one or the new one."""
+@contextmanager
+def replacing(path):
+    """Give a path to write to, which takes the place of `path` at the end of the block.
+
+    Readers see either the old file or the new one. Where the block ends by an error the old one
+    stays, and what was written is removed; an OSError names the file.
+    """
     path = Path(path)
     part = path.with_name(path.name + ".part")
-    part.write_text(text)
-    os.replace(part, path)
+    try:
+        yield part
+        os.replace(part, path)
+    except BaseException as error:
+        part.unlink(missing_ok=True)
+        if isinstance(error, OSError) and error.filename is None:
+            reason = error.strerror or str(error) or type(error).__name__
+            raise OSError(error.errno, f"could not be written: {reason}", str(path)) from error
+        raise
+
+
+def replace_text(path, text):
+    """Write a text file so that readers see either the old one or the new one."""
+    with replacing(path) as part:
+        part.write_text(text)
 
 
 def write_json(path, content):

@@ -2,7 +2,6 @@
 """Files of results: ParaView time series of a mesh, and a table of scalars over time."""
 
 import csv
-import io
 import math
 import os
 from pathlib import Path
@@ -15,7 +14,8 @@ from vtkmodules.vtkCommonCore import vtkObject, vtkPoints
 from vtkmodules.vtkCommonDataModel import VTK_LINE, VTK_TRIANGLE, vtkCellArray, vtkUnstructuredGrid
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
 
-from .files import BadFile, read_text, replace_text, shown, write_json
+from .files import BadFile, read_text, replace_text, write_json
+from .history import is_value, read_history  # noqa: F401  (belongs to HistoryWriter; free of VTK)
 
 
 class NotFinite(ValueError):
@@ -209,7 +209,7 @@ def list_series(path):
     series = []
     for number, item in enumerate(items):
         time, name = item.get("timestep", ""), item.get("file", "")
-        if not _is_value(time) or not name or Path(name).name != name:
+        if not is_value(time) or not name or Path(name).name != name:
             raise BadFile(path, f"shape {number}", "must have a finite time and the name of a file")
         if series and float(time) <= series[-1][0]:
             raise BadFile(path, f"shape {number}", "must be later than the one before")
@@ -254,42 +254,6 @@ def _read_grid(path):
     if not grid.GetNumberOfPoints() or not grid.GetNumberOfCells():
         raise BadFile(path, "", "could not be read")
     return grid
-
-
-def read_history(path):
-    """Columns of a .csv file of HistoryWriter: dict of (S,) float by name.
-
-    Raises
-    ------
-    BadFile
-        If it is no complete table of finite numbers under names that differ.
-    """
-    text = read_text(path)
-    if not text.endswith("\n"):
-        raise BadFile(path, f"line {text.count(chr(10)) + 1}", "is cut off")
-    try:
-        names, *rows = csv.reader(io.StringIO(text, newline=""), strict=True)
-    except csv.Error as error:
-        raise BadFile(path, "", f"is no table: {error}") from None
-    if not all(names) or len(set(names)) < len(names) or any(map(_is_value, names)):
-        raise BadFile(path, "line 1", "must name every column, each otherwise")
-    for number, row in enumerate(rows, start=2):
-        if len(row) != len(names):
-            raise BadFile(path, f"line {number}", f"has {len(row)} values for {len(names)} columns")
-        for name, value in zip(names, row):
-            if not _is_value(value):
-                reason = f"is {shown(value)}; must be a finite number"
-                raise BadFile(path, f"line {number}, {shown(name)[1:-1]}", reason)
-    table = np.array(rows, dtype=float).reshape(-1, len(names))
-    return {name: table[:, i] for i, name in enumerate(names)}
-
-
-def _is_value(text):
-    """Whether a text is a finite number, written as others than Python write it, too."""
-    try:
-        return "_" not in text and math.isfinite(float(text))
-    except ValueError:
-        return False
 
 
 def cell_array(cells):

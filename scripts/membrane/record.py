@@ -10,7 +10,8 @@ from yade import wrapper as yade
 from . import measures
 from .geometry import side_lengths, side_rows, triangle_areas
 from .hub import inertia
-from .output import HistoryWriter, VtkSeries, read_history
+from .history import read_history
+from .output import HistoryWriter, VtkSeries
 
 LEDGER_UNITS = {
     "kinetic_energy": "J",

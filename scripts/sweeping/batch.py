@@ -9,7 +9,7 @@ import time
 from contextlib import contextmanager
 from pathlib import Path
 
-from membrane.case_folder import FAILED, KILLED, MISSING, RUNNING, look, part_of
+from membrane.case_folder import DAMAGED, FAILED, KILLED, MISSING, RUNNING, advice, look, part_of
 from membrane.progress import Progress
 
 from .grid import CASES, table
@@ -35,7 +35,8 @@ def alone(folder):
 def run(folder, cases, jobs, checkpoint_every, pictures, tell):
     """Run those cases that are not finished yet.
 
-    Cases that were stopped from outside are started again, alone, up to ROUNDS times.
+    Cases that were stopped from outside are started again, alone, up to ROUNDS times. Damaged ones
+    are told, and left as they are.
 
     Parameters
     ----------
@@ -50,14 +51,13 @@ def run(folder, cases, jobs, checkpoint_every, pictures, tell):
         Draw each case's own pictures.
     tell : callable
         Takes a line of text for the user.
-
-    Returns
-    -------
-    dict of Status by name
-        Of all cases.
     """
     here = folder / CASES
     before = {name: look(here / name) for name in cases}
+    for name, status in before.items():
+        if status.state == DAMAGED:
+            tell(f"{status.reason}; {advice(status.folder)}")
+    cases = {name: p for name, p in cases.items() if before[name].state != DAMAGED}
     left = {name: p for name, p in cases.items() if not before[name].is_finished}
     if len(left) < len(cases):
         tell(f"{len(cases) - len(left)} of {len(cases)} cases are there already")
@@ -72,12 +72,13 @@ def run(folder, cases, jobs, checkpoint_every, pictures, tell):
         for name, status in now.items():
             if status.state == FAILED:
                 tell(f"{name} failed: {status.reason}")
+            elif status.state == DAMAGED:
+                tell(f"{status.reason}; {advice(status.folder)}")
             elif not status.is_finished:
                 again = "" if turn + 1 == ROUNDS else "; it runs again"
                 tell(f"{name}: {status.reason}{_last_words(folder, name)}{again}")
         stopped = [n for n, status in now.items() if status.state in (KILLED, RUNNING, MISSING)]
         left = {name: cases[name] for name in stopped}
-    return {name: look(here / name) for name in cases}
 
 
 def _batch(folder, cases, left, jobs, checkpoint_every, pictures):

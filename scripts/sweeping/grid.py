@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The cases of a sweep over alpha_c and beta, and the folder where they go."""
 
-import json
+from contextlib import suppress
 from dataclasses import fields, replace
+from pathlib import PurePath
 
-from membrane.case_folder import PART, RESULT, finished
-from membrane.files import write_json
+from membrane.case_folder import PART, RESULT, Damaged, check_parameters, finished
+from membrane.files import BadFile, read_object, shown, write_json
 from membrane.parameters import TABLE_2_CASES, SailParameters
 
 AXES = tuple(TABLE_2_CASES)  # alpha_crease, beta
 PLAN = "sweep.json"  # what a sweep consists of
 CASES = "cases"  # folder of the cases
+OF_ONE_RUN = ("summary.json", "unfinished")  # what single runs leave in their folders
 
 
 def text(value):
@@ -59,8 +61,39 @@ def plan(folder, cases):
     """
     (folder / CASES).mkdir(parents=True, exist_ok=True)
     for name, p in cases.items():
-        finished(folder / CASES / name, p.as_dict())
+        with suppress(Damaged):  # is told when its turn comes
+            finished(folder / CASES / name, p.as_dict())
     write_json(folder / PLAN, {"cases": {name: p.as_dict() for name, p in cases.items()}})
+
+
+def refuse_other_results(folder):
+    """Raise ValueError if a folder holds the results of a single run, whose page would be lost."""
+    found = next((folder / name for name in OF_ONE_RUN if (folder / name).exists()), None)
+    if found and not (folder / PLAN).exists():
+        raise ValueError(
+            f"{found} is a single run's, whose results would be lost: choose another folder"
+        )
+
+
+def planned_cases(folder):
+    """Parameters (dict) of the cases that a sweep consists of, by name; {} if nobody planned any.
+
+    Raises
+    ------
+    BadFile
+    """
+    path = folder / PLAN
+    if not path.exists():
+        return {}
+    cases = read_object(path).get("cases")
+    if not isinstance(cases, dict):
+        raise BadFile(path, "cases", f"must be an object, not {shown(cases)}")
+    for name, parameters in cases.items():
+        place = f"cases.{shown(name)[1:-1]}"
+        if PurePath(name).name != name or "\0" in name:
+            raise BadFile(path, place, "is no name of a folder")
+        check_parameters(path, place, parameters)
+    return cases
 
 
 def case_folders(folder):
@@ -69,10 +102,7 @@ def case_folders(folder):
     A case is found where there is a case.json, or a folder of an unfinished case, one or two levels
     below `folder`.
     """
-    planned = {}
-    if (folder / PLAN).exists():
-        cases = json.loads((folder / PLAN).read_text())["cases"]
-        planned = {folder / CASES / name: parameters for name, parameters in cases.items()}
+    planned = {folder / CASES / name: p for name, p in planned_cases(folder).items()}
     found = {path.parent for level in ("*", "*/*") for path in folder.glob(f"{level}/{RESULT}")}
     found = {path.with_name(path.name.removesuffix(PART)) for path in found}
     for level in ("*", "*/*"):

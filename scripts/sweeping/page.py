@@ -25,7 +25,8 @@ th { background: #f4f4f2; font-weight: 600; } th small { font-weight: 400; color
 td:first-child { white-space: nowrap; }
 .number { text-align: right; font-variant-numeric: tabular-nums; }
 tr.diverged td { background: #fdf0e3; }
-tr.failed td, tr.killed td, tr.running td, tr.missing td { background: #fbe6e6; }
+tr.damaged td, tr.failed td, tr.killed td, tr.running td, tr.missing td {
+     background: #fbe6e6; }
 .shapes { display: grid; grid-template-columns: repeat(auto-fill, minmax(24rem, 1fr)); gap: 1rem; }
 </style>
 </head>
@@ -43,7 +44,8 @@ tr.failed td, tr.killed td, tr.running td, tr.missing td { background: #fbe6e6; 
 <h2>Cases that are not complete</h2>
 <p>A diverged case is a result: run again it diverges again. Times in the reasons are on YADE's
 clock, which runs through the spin-up; those in the table count from the release. All other cases
-are missing; the sweep's command runs them, and them alone.</p>
+are missing; the sweep's command runs them, and them alone.
+{% if "damaged" in states %}Damaged ones it runs once their folders are removed.{% endif %}</p>
 <div class="wide"><table>
 <tr><th>case</th><th>outcome</th><th class="number">at <small>[s]</small></th><th>because</th></tr>
 {% for status in others %}

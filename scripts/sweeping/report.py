@@ -8,7 +8,7 @@ from membrane.case_folder import COMPLETE, DIVERGED
 from membrane.files import replace_text
 from membrane.parameters import SailParameters
 
-from .grid import AXES
+from .grid import AXES, refuse_other_results
 from .page import render
 from .pictures import plot_curves, plot_swing, three_digits
 from .results import MEASURES, read, varied, write_table
@@ -39,9 +39,10 @@ def report(folder):
     Raises
     ------
     ValueError
-        If there is no case.
+        If there is no case, or the results of something else would be lost.
     """
     folder = Path(folder)
+    refuse_other_results(folder)
     results = read(folder)
     write_table(results, folder / TABLE)
     drawn = draw(results, folder)
@@ -52,10 +53,16 @@ def report(folder):
 def draw(results, folder):
     """Draw the pictures; returns their captions by file name.
 
-    They have alpha_c and beta for axes: with further parameters that vary there are none.
+    They have alpha_c and beta for axes: with further parameters that vary there are none. A case
+    of which nobody knows the parameters has no place in them.
     """
+    results = [result for result in results if result.status.parameters]
     places = [result.axes for result in results]
-    if len(set(places)) < len(places) or None in {v for place in places for v in place}:
+    if (
+        not places
+        or len(set(places)) < len(places)
+        or None in {v for place in places for v in place}
+    ):
         return {}
     curves = {r.axes: r for r in results if r.history is not None}
     ends = {r.axes for r in results if r.status.state == DIVERGED}

@@ -32,15 +32,17 @@ class Result:
     Attributes
     ----------
     status : Status
-    history : structured array (S,) or None
-        Its history.csv; None where there is none.
     measures : dict
         MEASURES by name; None where there is none.
     """
 
     status: Status
-    history: np.ndarray | None
     measures: dict
+
+    @property
+    def history(self):
+        """Columns (S,) of its history.csv by name; None where there is none."""
+        return self.status.history
 
     @property
     def axes(self):
@@ -59,21 +61,12 @@ def read(folder):
     for place, planned in case_folders(folder).items():
         status = look(place)
         status.parameters = status.parameters or planned
-        history = _history(place) if status.is_finished else None
-        measured = measure(history) if status.state == COMPLETE else dict.fromkeys(MEASURES)
-        found.append(Result(status, history, measured))
+        is_complete = status.state == COMPLETE
+        measured = measure(status.history) if is_complete else dict.fromkeys(MEASURES)
+        found.append(Result(status, measured))
     if not found:
         raise ValueError(f"{folder} holds no case")
     return sorted(found, key=lambda r: (*(-1 if v is None else v for v in r.axes), r.status.name))
-
-
-def _history(folder):
-    """The history.csv of a case; None if it has no rows."""
-    path = folder / "history.csv"
-    if not path.exists():
-        return None
-    rows = np.atleast_1d(np.genfromtxt(path, delimiter=",", names=True))
-    return rows if rows.size else None
 
 
 def measure(history):
