@@ -6,6 +6,7 @@ For test_drawing, which runs it with a display: `yade -x tests/drawn_scenes.py F
 
 import json
 import sys
+import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(sys.argv[0]).resolve().parent))
@@ -187,7 +188,11 @@ def draw_deployment(stage):
     frames = []
 
     def look(sail_now):
+        # The run is over in no time; it waits for a window that draws slowly.
         watch(sail_now)
+        end = time.monotonic() + window.PATIENCE
+        while [watch.window.drawer.frames] == frames[-1:] and time.monotonic() < end:
+            watch(sail_now)
         frames.append(watch.window.drawer.frames)
 
     with quiet():
