@@ -24,7 +24,9 @@ def command_line():
         prog="case", description="Deploy the paper's solar sail; leave all results or none."
     )
     parser.add_argument("--out", metavar="DIR", help="folder of the case; it appears at the end")
-    parser.add_argument("--no-pictures", action="store_true", help="draw no pictures")
+    parser.add_argument(
+        "--no-pictures", action="store_true", help="draw no pictures and write no report.html"
+    )
     parser.add_argument(
         "--checkpoint-every",
         type=float,

@@ -313,10 +313,16 @@ verify)
 sweep)
     need "${sweep_packages[@]}"
     compile
+    viewer_if_possible
     set_environment
     exec python3 "$root/scripts/sweep.py" run "$@"
     ;;
-case | stability | parts | chart)
+case)
+    compile
+    viewer_if_possible
+    run_yade "$root/scripts/case.py" "$@"
+    ;;
+disk | stability | parts | chart)
     compile
     run_yade "$root/scripts/$command.py" "$@"
     ;;
@@ -340,13 +346,10 @@ ikaros)
     viewer_if_possible
     run_yade "$root/scripts/ikaros.py" "$@"
     ;;
-disk)
-    compile
-    run_yade "$root/scripts/$command.py" "$@"
-    ;;
 workflow)
     need "${sweep_packages[@]}" "${workflow_packages[@]}"
     compile
+    viewer_if_possible
     set_environment
     exec python3 "$root/scripts/workflow.py" "$@"
     ;;

@@ -51,7 +51,9 @@ def command_line():
         metavar="SECONDS",
         help="wall time between two checkpoints of a case (default 60)",
     )
-    run.add_argument("--no-pictures", action="store_true", help="draw no pictures of single cases")
+    run.add_argument(
+        "--no-pictures", action="store_true", help="neither pictures nor pages of single cases"
+    )
     only = commands.add_parser("report", help="report what is there")
     only.add_argument("folder", type=Path, help="folder of the sweep, or of the cases")
     defaults = {"duration": TABLE_2_DURATION}

@@ -17,7 +17,7 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
-from membrane import sail
+from membrane import report, sail
 from membrane.case_folder import (
     COMPLETE,
     DAMAGED,
@@ -191,8 +191,8 @@ class TestCase(SweepTest):
         self.assertFalse(part_of(folder).exists())
 
     def test_case_killed_while_tethers_lie_on_the_spool_leaves_the_same_files(self):
-        options = [*SHORT, "--tip-mass", "5e-3", "--duration", "0.19", "--no-pictures"]
-        quiet, folder = scratch() / "wound", scratch() / "killed_wound" / "case"
+        options = [*SHORT, "--tip-mass", "5e-3", "--duration", "0.19"]
+        quiet, folder = (scratch() / name / "case" for name in ("wound", "killed_wound"))
         said, _ = start_case(quiet, *options, *OFTEN).communicate()
         history = read_history(quiet / "history.csv")
         first = int(np.argmax(history["contact_work"] != 0))
@@ -206,6 +206,7 @@ class TestCase(SweepTest):
         said, _ = process.communicate()
         self.assertEqual(process.returncode, 0, said)
         self.same(quiet, folder)
+        self.assertEqual((folder / "report.html").exists(), report.TEMPLATE.is_file())
 
     def test_finished_case_is_left_alone_and_another_is_refused(self):
         before = {path: path.stat().st_mtime_ns for path in diverged().rglob("*")}
@@ -475,6 +476,7 @@ class TestReport(SweepTest):
             (status, said.splitlines()[0]), (0, "2 of 2 cases are complete, 0 diverged.")
         )
         usual = (whole / "cases.csv").read_text().splitlines()[2]
+        self.assertNotIn("in 3D", (whole / "report.html").read_text())
         for number, (what, (damage, reason)) in enumerate(DAMAGES.items()):
             with self.subTest(what):
                 folder, case = self.copy(f"damaged_{number}")
@@ -626,6 +628,15 @@ class TestReport(SweepTest):
         self.assertIn("15 of 15 cases are complete", said)
         for name in ("deployment_rate.png", "phase_difference.png", "swing.png"):
             self.assertEqual((folder / name).read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+
+    def test_case_that_has_a_page_is_linked_to_it(self):
+        folder, case = self.copy("with_a_page")
+        (case / "shapes.png").touch()
+        (case / "report.html").touch()
+        status, said = self.report(folder)
+        self.assertEqual(status, 0, said)
+        page = (folder / "report.html").read_text()
+        self.assertEqual(page.count(f'<a href="cases/{case.name}/report.html">'), 2)
 
     def test_folder_without_cases_is_a_sentence(self):
         folder = scratch() / "empty"

@@ -4,6 +4,7 @@
 import subprocess
 import unittest
 
+from membrane.case_folder import part_of
 from membrane.unfinished import UNFINISHED, name_of, new_results
 from support import scratch, yade_environment
 
@@ -88,6 +89,7 @@ class TestNewResults(unittest.TestCase):
         with new_results(self.folder) as part:
             self.assertEqual(name_of(part), self.folder.name)
         self.assertEqual(name_of(self.folder), self.folder.name)
+        self.assertEqual(name_of(part_of(self.folder)), self.folder.name)
 
 
 if __name__ == "__main__":

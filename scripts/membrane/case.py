@@ -39,7 +39,7 @@ def run_case(p, folder, checkpoint_every=60.0, pictures=True):
     checkpoint_every : float
         Wall time between two checkpoints [s], >= 0.
     pictures : bool
-        Draw the case's pictures.
+        Draw the case's pictures and write its report.html.
 
     Returns
     -------
@@ -100,7 +100,7 @@ def finish(p, folder, checkpoints, pictures):
 def deploy(p, part, checkpoints, pictures):
     """Run the case in `part`; returns its outcome, and of a diverged one when and why."""
     try:
-        sail.deploy(p, part, pictures, checkpoints, page=False)
+        sail.deploy(p, part, pictures, checkpoints, page=pictures)
     except sail.Diverged as error:
         about = {"stage": error.stage, "time": error.time, "reason": error.reason}
         return {"outcome": DIVERGED, **about}

@@ -7,6 +7,8 @@ import shutil
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from .case_folder import PART
+
 UNFINISHED = "unfinished"  # folder within the output folder
 LOCK = "lock"
 
@@ -70,7 +72,7 @@ def new_results(folder):
 def name_of(folder):
     """Name of an output folder, also of one whose results are still being written."""
     path = Path(folder).resolve()
-    return path.parent.name if path.name == UNFINISHED else path.name
+    return path.parent.name if path.name == UNFINISHED else path.name.removesuffix(PART)
 
 
 @contextmanager

@@ -48,7 +48,7 @@ def run(folder, cases, jobs, checkpoint_every, pictures, tell):
     checkpoint_every : float
         Wall time between two checkpoints of a case [s].
     pictures : bool
-        Draw each case's own pictures.
+        Draw each case's own pictures and write its page.
     tell : callable
         Takes a line of text for the user.
     """

@@ -66,7 +66,7 @@ are missing; the sweep's command runs them, and them alone.
 {%- if unit != "-" %} <small>[{{ unit }}]</small>{% endif %}</th>{% endfor %}</tr>
 {% for case in cases %}
 <tr class="{{ case.state | replace("not begun", "missing") }}">
-<td>{% if case.place %}<a href="{{ case.place }}/">{{ case.name }}</a>
+<td>{% if case.place %}<a href="{{ case.page or case.place ~ "/" }}">{{ case.name }}</a>
 {%- else %}{{ case.name }}{% endif %}</td>
 <td>{{ case.state }}</td>
 {%- for value in case["values"] %}<td class="number">{{ value or "–" }}</td>{% endfor %}</tr>
@@ -84,7 +84,8 @@ are missing; the sweep's command runs them, and them alone.
 {% for case in cases if case.shapes %}
 <figure><a href="{{ case.shapes }}">
 <img src="{{ case.shapes }}" loading="lazy" alt="Shapes of {{ case.name }}"></a>
-<figcaption>{{ case.name }}</figcaption></figure>
+<figcaption>{{ case.name }}
+{%- if case.page %}: <a href="{{ case.page }}">in 3D</a>{% endif %}</figcaption></figure>
 {% endfor %}
 </div>
 {% endif %}

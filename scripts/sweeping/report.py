@@ -136,12 +136,16 @@ def _row(result, parameters, folder):
     """A case as the page shows it."""
     status = result.status
     values = [status.parameters.get(name) for name in parameters]
-    shapes = status.folder / "shapes.png"
+
+    def place(path):
+        return str(path.relative_to(folder)) if path.exists() else ""
+
     return {
         "name": status.name,
         "state": status.state,
-        "place": str(status.folder.relative_to(folder)) if status.is_finished else "",
-        "shapes": str(shapes.relative_to(folder)) if shapes.exists() else "",
+        "place": place(status.folder),
+        "page": place(status.folder / PAGE),
+        "shapes": place(status.folder / "shapes.png"),
         "values": [_short(v) for v in values] + [_measure(v) for v in result.measures.values()],
     }
 
