@@ -39,6 +39,19 @@ def film(image):
     return np.mean((red > blue + 40) & (green > blue))
 
 
+def along(ends, share):
+    """Points (C, 3) at a share of the length of lines between `ends` (C, 2, 3)."""
+    return ends[:, 0] + share * (ends[:, 1] - ends[:, 0])
+
+
+def on_picture(stage, point):
+    """Row and column where a stage's picture shows a point (3,) [m]."""
+    stage.renderer.SetWorldPoint(*point, 1)
+    stage.renderer.WorldToDisplay()
+    x, y, _ = stage.renderer.GetDisplayPoint()
+    return animation.SIZE[1] - 1 - int(y), int(x)
+
+
 @unittest.skipIf(MISSING, f"needs {' and '.join(MISSING)}")
 class TestPictures(unittest.TestCase):
     @classmethod
@@ -83,6 +96,23 @@ class TestPictures(unittest.TestCase):
         self.assertGreater(film(picture), 0.01)
         metal = np.all(np.abs(picture.astype(int) - [105, 112, 130]) < 12, axis=-1)
         self.assertLess(np.mean(metal), 1e-3)
+
+    def test_fold_lines_are_seen_along_their_whole_length_on_all_petals(self):
+        mesh = sail_mesh()
+        series = VtkSeries(scratch() / "flat", "film", mesh.triangles)
+        series.write(0.0, mesh.nodes)
+        flat = list_series(scratch() / "flat" / "film.pvd")
+        run = replace(read_run(short_run()), shapes=flat, spool=(1e-6, 1e-6))  # it hides nothing
+        with animation.virtual_display():
+            with contextlib.closing(animation.Stage(run)) as stage:
+                bright = stage.picture(0).astype(int).sum(axis=2)
+                ends = mesh.nodes[mesh.creases]
+                places = [on_picture(stage, x) for t in (0.2, 0.5, 0.8) for x in along(ends, t)]
+                offside = [on_picture(stage, x) for x in mesh.nodes[mesh.triangles].mean(axis=1)]
+        film = np.median([bright[row, column] for row, column in offside])
+        dark = [bright[r - 1 : r + 2, c - 1 : c + 2].min() < 0.7 * film for r, c in places]
+        self.assertGreater(len(dark), 1000)
+        self.assertGreater(np.mean(dark), 0.99)
 
     def test_same_shape_gives_the_same_picture(self):
         np.testing.assert_array_equal(self.first, self.again)
@@ -132,6 +162,15 @@ class TestFilms(unittest.TestCase):
         self.assertEqual(stream["nb_read_frames"], "7")
         self.assertLess(stream["width"], animation.GIF_WIDTHS[0])
         self.assertAlmostEqual(float(stream["duration"]), 21 / 25, delta=0.1)
+
+
+class TestPace(unittest.TestCase):
+    def test_film_tells_how_much_slower_it_is_however_steps_fall(self):
+        self.assertEqual(animation.pace([0, 0.01, 0.02]), "slowed down 4 times")
+        self.assertEqual(animation.pace([0, 0.010003, 0.020048]), "slowed down 4 times")
+        self.assertEqual(animation.pace([0, 0.5, 1.0005]), "speeded up 12.5 times")
+        for real in ([0, 0.04, 0.08], [0, 0.0401], [1.0]):
+            self.assertEqual(animation.pace(real), "")
 
 
 class TestWithoutTools(unittest.TestCase):
