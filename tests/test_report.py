@@ -12,6 +12,7 @@ from pathlib import Path
 from unittest import mock
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.image import imread
 from membrane import report, sail
 from membrane.geometry import crease_angles
@@ -45,6 +46,12 @@ SWITCHES = (
 def unpacked(text, kind):
     """Array from the page's base64."""
     return np.frombuffer(base64.b64decode(text), dtype=kind)
+
+
+def hue(colours):
+    """Directions (n, 3) of colours (n, 3) in linear light: the same however bright it is."""
+    linear = np.where(colours > 0.04045, ((colours + 0.055) / 1.055) ** 2.4, colours / 12.92)
+    return linear / np.linalg.norm(linear, axis=1)[:, None]
 
 
 class TestReportData(unittest.TestCase):
@@ -129,6 +136,8 @@ class TestOtherRuns(unittest.TestCase):
         curves, measures = self.labels(data)
         self.assertEqual(curves, ["area over flat area", "crease angle", "spin", "energy"])
         self.assertIn("spin at the end", measures)
+        energy = [line["label"] for line in data["curves"][-1]["lines"]]
+        self.assertEqual(energy, ["kinetic", "elastic", "creases", "damping work"])
         self.assertIsNone(data["spool"])
         self.assertEqual(len(data["tips"]), 4)
         self.assertEqual(len(data["times"]), 5)
@@ -424,6 +433,36 @@ class TestReportInBrowser(unittest.TestCase):
         Select(self.find("field")).select_by_index(0)
         self.assertFalse(self.find("legend").is_displayed())
         self.assertEqual(self.changed(seen[0], self.picture()), 0)
+
+    def test_film_has_the_colours_of_its_scale_lit_more_or_less(self):
+        self.find("folds").click()
+        Select(self.find("field")).select_by_visible_text("tension")
+        self.find("slider").send_keys(Keys.END)
+        image = self.picture()
+        faces = np.abs(image[:-1, :-1] - image[1:, 1:]).max(axis=2) == 0  # of one colour
+        faces &= np.abs(image[:-1, :-1] - image[0, 0]).max(axis=2) > 0.1
+        pixels = np.round(255 * image[:-1, :-1][faces])
+        shown, counts = np.unique(pixels, axis=0, return_counts=True)
+        self.assertGreater(len(shown), 100)
+        hues = hue(colormaps["viridis"](np.arange(256))[:, :3])
+        apart = np.linalg.norm(hue(shown / 255)[:, None] - hues, axis=2).min(axis=1)
+        self.assertLess(np.average(apart > 0.03, weights=counts), 0.08)  # spool and tips
+
+    def test_key_tells_sides_and_folds_where_they_are_seen(self):
+        def told():
+            return [e.text for e in self.driver.find_elements(By.CSS_SELECTOR, ".key span span")]
+
+        sides, folds = ["top", "bottom"], ["mountain", "valley"]
+        for field, expected in ((0, sides + folds), (1, folds), (4, [])):
+            Select(self.find("field")).select_by_index(field)
+            self.assertEqual([text for text in told() if text], expected)
+        Select(self.find("field")).select_by_index(0)
+        self.find("folds").click()
+        self.assertEqual([text for text in told() if text], sides)
+        self.resize(390, 844)
+        places = (".scale-bar", ".key")
+        bar, key = (self.driver.find_element(By.CSS_SELECTOR, place).rect for place in places)
+        self.assertLess(bar["x"] + bar["width"], key["x"])
 
     def test_turning_with_the_spool_is_another_view_once_it_has_turned(self):
         start = self.picture()
