@@ -6,6 +6,7 @@ import io
 import json
 import re
 import shutil
+import sys
 import time
 import unittest
 from pathlib import Path
@@ -19,7 +20,11 @@ from membrane.geometry import crease_angles
 from membrane.mesh import sail_mesh
 from membrane.output import list_series, read_frame, read_history
 from membrane.parameters import SailParameters
-from support import CommandTest, free_hub_run, pattern_run, scratch, short_run
+from support import ROOT, CommandTest, free_hub_run, pattern_run, scratch, short_run
+
+sys.path.append(str(ROOT / "scripts"))
+
+from sweeping.page import render  # noqa: E402  (found only now)
 
 try:
     from selenium import webdriver
@@ -480,6 +485,28 @@ class TestReportInBrowser(unittest.TestCase):
             wide = self.driver.execute_script("return document.documentElement.scrollWidth")
             self.assertLessEqual(wide, width)
             self.assertGreater(self.golden(self.picture()), 0.005, width)
+
+    def test_page_of_a_sweep_is_no_wider_than_a_phone(self):
+        case = {"state": "complete", "values": ["1000", "30", "0.865", "92.0"] * 2}
+        names = [f"alpha_crease_1000-beta_{beta}" for beta in (3, 30)]
+        page = scratch() / "sweep.html"
+        content = render(
+            states={"complete": 2},
+            pictures={"swing.png": "The swing over alpha_c and beta."},
+            columns=[("time_of_amplitude", "s", "when the largest lag is reached")] * 8,
+            cases=[{**case, "name": n, "place": n, "shapes": f"{n}/shapes.png"} for n in names],
+            others=[],
+            common=[("spin_up_tolerance", "1e-06", "-", "residual energy", "run")],
+            versions={"numpy": "1.24.2"},
+            table="cases.csv",
+            axes=["alpha_crease", "beta"],
+        )
+        page.write_text(content)
+        self.resize(390, 844)
+        self.driver.get(page.as_uri())
+        self.assertIn("Sweep over alpha_crease", self.driver.title)
+        wide = self.driver.execute_script("return document.documentElement.scrollWidth")
+        self.assertLessEqual(wide, 390)
 
 
 class TestCommand(CommandTest):
