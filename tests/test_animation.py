@@ -62,8 +62,28 @@ class TestPictures(unittest.TestCase):
         with animation.virtual_display():
             with contextlib.closing(animation.Stage(run)) as stage:
                 cls.first, cls.again, cls.last = (stage.picture(i) for i in (0, 0, 20))
+                cls.places = [cls.marked_places(stage, i) for i in (0, 20)]
                 camera = stage.renderer.GetActiveCamera()
                 cls.pixels_per_metre = 360 / (2 * camera.GetParallelScale())
+
+    @staticmethod
+    def marked_places(stage, i):
+        """Where shape `i` has its tip masses, the spool's mark, and the spool opposite of it."""
+        tips = read_frame(stage.shapes[i][1])[0][stage.run.tips]
+        (radius, height), angle = stage.run.spool, stage.run.parameters.omega * stage.shapes[i][0]
+        mark = 0.5 * radius * np.array([np.cos(angle), np.sin(angle), 0])
+        above = np.array([0, 0, 0.51 * height])
+        points = [*tips, above + mark, above - mark]
+        return [on_picture(stage, point) for point in points]
+
+    def test_tip_masses_and_the_turning_spool_are_where_they_are(self):
+        for image, places in zip((self.first, self.last), self.places):
+            *tips, mark, spool = [image[place].astype(int) for place in places]
+            self.assertEqual(len(tips), 4)
+            for colour in tips:
+                self.assertLess(colour.max(), 90)
+            self.assertGreater(mark.min(), 200)
+            self.assertTrue(90 < spool.min() <= spool.max() < 160, spool)
 
     def test_sail_opens_and_is_shaded(self):
         self.assertEqual(self.first.shape, (360, 640, 3))
@@ -143,6 +163,8 @@ class TestFilms(unittest.TestCase):
         self.assertEqual((stream["width"], stream["height"]), animation.SIZE)
         self.assertEqual(stream["nb_read_frames"], "21")
         self.assertEqual(stream["r_frame_rate"], "25/1")
+        film = self.made[0].read_bytes()
+        self.assertTrue(0 < film.find(b"moov") < film.find(b"mdat"))  # plays while it loads
 
     def test_gif_is_small_and_takes_as_long(self):
         mp4, gif = (probe(path) for path in self.made)
