@@ -330,15 +330,13 @@ class TestReportInBrowser(unittest.TestCase):
     def test_tip_masses_spool_and_scale_are_where_they_are(self):
         (_, first), *_, (end, last) = list_series(short_run() / "shapes" / "film.pvd")
         mesh, p = sail_mesh(), SailParameters()
-        for key, time, path in ((Keys.HOME, 0.0, first), (Keys.END, end, last)):
+        for key, now, path in ((Keys.HOME, 0.0, first), (Keys.END, end, last)):
             self.find("slider").send_keys(key)
             image = self.canvas()
             view = FirstView(image.shape)
             tips = [view.colour(image, tip) for tip in read_frame(path)[0][mesh.tips]]
             self.assertGreaterEqual(sum(colour.max() < 0.35 for colour in tips), 3)  # before film
-            along = (
-                0.5 * p.spool_radius * np.array([np.cos(p.omega * time), np.sin(p.omega * time)])
-            )
+            along = 0.5 * p.spool_radius * np.array([np.cos(p.omega * now), np.sin(p.omega * now)])
             mark, opposite = ([*place, 0.51 * p.spool_height] for place in (along, -along))
             self.assertGreater(view.colour(image, mark).min(), 0.75)
             grey = view.colour(image, opposite)
