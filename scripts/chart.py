@@ -23,10 +23,9 @@ SCRIPTS = Path(sys.argv[0]).resolve().parent  # YADE keeps __file__ for itself
 sys.path.append(str(SCRIPTS))
 
 with plain_errors("chart"):
-    from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
     from membrane import scene
     from verification import deployment, spinning
+    from verification.chart_picture import TITLES, draw
     from verification.variant import Variant
 
 REFERENCE = SCRIPTS.parent / "reference"
@@ -177,55 +176,6 @@ def mark_pareto(points):
             and (q.cost < point.cost or q.error < point.error)
             for q in rivals
         )
-
-
-TITLES = {
-    "deployment": ("Early deployment curve", "processor time for 1 s [s]", "rms error of rate [-]"),
-    "disk": ("Spinning disk", "processor time for a turn [s]", "error of frequencies [-]"),
-    "ledger": ("Energy ledger", "processor time for 1 s [s]", "imbalance / kinetic energy [-]"),
-}
-COLOURS = {1: "C0", 2: "C1", 3: "C2", 4: "C3", 8: "C0", 16: "C1", 32: "C2"}
-
-
-def draw(points, path):
-    """Draw the three questions side by side."""
-    figure = Figure(figsize=(15, 5), layout="constrained")
-    for axes, (question, (title, cost, error)) in zip(figure.subplots(1, 3), TITLES.items()):
-        chosen = [p for p in points if p.question == question]
-        for p in chosen:
-            marker = "x" if p.part else {"fused": "o", "law2": "s"}[p.path]
-            fill = "none" if p.path == "law2" else "full"
-            axes.plot(p.cost, p.error, marker, color=COLOURS[p.mesh], fillstyle=fill)
-            if p.part:
-                axes.annotate(
-                    p.part, (p.cost, p.error), (4, 3), textcoords="offset points", fontsize=7
-                )
-        front = sorted((p for p in chosen if p.pareto), key=lambda p: p.cost)
-        axes.plot([p.cost for p in front], [p.error for p in front], "k--", lw=0.8, zorder=0)
-        for p in front:
-            axes.annotate(
-                f"{p.dt:.2g} s",
-                (p.cost, p.error),
-                (-4, -11),
-                textcoords="offset points",
-                fontsize=7,
-            )
-        axes.set(xscale="log", yscale="log", title=title, xlabel=cost, ylabel=error)
-        axes.grid(alpha=0.3, which="both")
-        name = "cells" if question == "disk" else "refine"
-        handles = [
-            Line2D([], [], marker="o", ls="", color=COLOURS[n], label=f"{name} = {n}")
-            for n in sorted({p.mesh for p in chosen})
-        ]
-        handles.append(Line2D([], [], marker="o", ls="", color="grey", label="fused"))
-        handles.append(Line2D([], [], marker="s", ls="", color="grey", mfc="none", label="law2"))
-        if any(p.part for p in chosen):
-            handles.append(
-                Line2D([], [], marker="x", ls="", color="grey", label="fused, without …")
-            )
-        handles.append(Line2D([], [], color="k", ls="--", lw=0.8, label="Pareto front, with dt"))
-        axes.legend(handles=handles, fontsize=7)
-    figure.savefig(path, dpi=100)
 
 
 def main():

@@ -39,6 +39,19 @@ def film(image):
     return np.mean((red > blue + 40) & (green > blue))
 
 
+def along(ends, share):
+    """Points (C, 3) at a share of the length of lines between `ends` (C, 2, 3)."""
+    return ends[:, 0] + share * (ends[:, 1] - ends[:, 0])
+
+
+def on_picture(stage, point):
+    """Row and column where a stage's picture shows a point (3,) [m]."""
+    stage.renderer.SetWorldPoint(*point, 1)
+    stage.renderer.WorldToDisplay()
+    x, y, _ = stage.renderer.GetDisplayPoint()
+    return animation.SIZE[1] - 1 - int(y), int(x)
+
+
 @unittest.skipIf(MISSING, f"needs {' and '.join(MISSING)}")
 class TestPictures(unittest.TestCase):
     @classmethod
@@ -49,8 +62,28 @@ class TestPictures(unittest.TestCase):
         with animation.virtual_display():
             with contextlib.closing(animation.Stage(run)) as stage:
                 cls.first, cls.again, cls.last = (stage.picture(i) for i in (0, 0, 20))
+                cls.places = [cls.marked_places(stage, i) for i in (0, 20)]
                 camera = stage.renderer.GetActiveCamera()
                 cls.pixels_per_metre = 360 / (2 * camera.GetParallelScale())
+
+    @staticmethod
+    def marked_places(stage, i):
+        """Where shape `i` has its tip masses, the spool's mark, and the spool opposite of it."""
+        tips = read_frame(stage.shapes[i][1])[0][stage.run.tips]
+        (radius, height), angle = stage.run.spool, stage.run.parameters.omega * stage.shapes[i][0]
+        mark = 0.5 * radius * np.array([np.cos(angle), np.sin(angle), 0])
+        above = np.array([0, 0, 0.51 * height])
+        points = [*tips, above + mark, above - mark]
+        return [on_picture(stage, point) for point in points]
+
+    def test_tip_masses_and_the_turning_spool_are_where_they_are(self):
+        for image, places in zip((self.first, self.last), self.places):
+            *tips, mark, spool = [image[place].astype(int) for place in places]
+            self.assertEqual(len(tips), 4)
+            for colour in tips:
+                self.assertLess(colour.max(), 90)
+            self.assertGreater(mark.min(), 200)
+            self.assertTrue(90 < spool.min() <= spool.max() < 160, spool)
 
     def test_sail_opens_and_is_shaded(self):
         self.assertEqual(self.first.shape, (360, 640, 3))
@@ -84,6 +117,23 @@ class TestPictures(unittest.TestCase):
         metal = np.all(np.abs(picture.astype(int) - [105, 112, 130]) < 12, axis=-1)
         self.assertLess(np.mean(metal), 1e-3)
 
+    def test_fold_lines_are_seen_along_their_whole_length_on_all_petals(self):
+        mesh = sail_mesh()
+        series = VtkSeries(scratch() / "flat", "film", mesh.triangles)
+        series.write(0.0, mesh.nodes)
+        flat = list_series(scratch() / "flat" / "film.pvd")
+        run = replace(read_run(short_run()), shapes=flat, spool=(1e-6, 1e-6))  # it hides nothing
+        with animation.virtual_display():
+            with contextlib.closing(animation.Stage(run)) as stage:
+                bright = stage.picture(0).astype(int).sum(axis=2)
+                ends = mesh.nodes[mesh.creases]
+                places = [on_picture(stage, x) for t in (0.2, 0.5, 0.8) for x in along(ends, t)]
+                offside = [on_picture(stage, x) for x in mesh.nodes[mesh.triangles].mean(axis=1)]
+        film = np.median([bright[row, column] for row, column in offside])
+        dark = [bright[r - 1 : r + 2, c - 1 : c + 2].min() < 0.7 * film for r, c in places]
+        self.assertGreater(len(dark), 1000)
+        self.assertGreater(np.mean(dark), 0.99)
+
     def test_same_shape_gives_the_same_picture(self):
         np.testing.assert_array_equal(self.first, self.again)
 
@@ -113,6 +163,8 @@ class TestFilms(unittest.TestCase):
         self.assertEqual((stream["width"], stream["height"]), animation.SIZE)
         self.assertEqual(stream["nb_read_frames"], "21")
         self.assertEqual(stream["r_frame_rate"], "25/1")
+        film = self.made[0].read_bytes()
+        self.assertTrue(0 < film.find(b"moov") < film.find(b"mdat"))  # plays while it loads
 
     def test_gif_is_small_and_takes_as_long(self):
         mp4, gif = (probe(path) for path in self.made)
@@ -132,6 +184,15 @@ class TestFilms(unittest.TestCase):
         self.assertEqual(stream["nb_read_frames"], "7")
         self.assertLess(stream["width"], animation.GIF_WIDTHS[0])
         self.assertAlmostEqual(float(stream["duration"]), 21 / 25, delta=0.1)
+
+
+class TestPace(unittest.TestCase):
+    def test_film_tells_how_much_slower_it_is_however_steps_fall(self):
+        self.assertEqual(animation.pace([0, 0.01, 0.02]), "slowed down 4 times")
+        self.assertEqual(animation.pace([0, 0.010003, 0.020048]), "slowed down 4 times")
+        self.assertEqual(animation.pace([0, 0.5, 1.0005]), "speeded up 12.5 times")
+        for real in ([0, 0.04, 0.08], [0, 0.0401], [1.0]):
+            self.assertEqual(animation.pace(real), "")
 
 
 class TestWithoutTools(unittest.TestCase):

@@ -1,12 +1,22 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The pictures' scale bar: as long as it says, across the view, within the picture."""
+"""Pictures: scale bars as long as they say, and words that can be read."""
 
+import csv
+import itertools
+import sys
 import unittest
+from types import SimpleNamespace
 
 import numpy as np
 from matplotlib.figure import Figure
 from membrane import plots
 from mpl_toolkits.mplot3d import proj3d
+
+from support import ROOT, scratch
+
+sys.path.append(str(ROOT / "scripts"))
+
+from verification.chart_picture import draw, words_box  # noqa: E402  (found only now)
 
 UNITS = {"mm": 1e-3, "m": 1.0}
 
@@ -39,6 +49,53 @@ class TestScaleBar(unittest.TestCase):
         for x, y in (left, right):
             self.assertTrue(0 < x < 1 and 0 < y < 0.5, (x, y))
         self.assertGreater(right[0] - left[0], 0.1)
+
+
+class TestChart(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        with open(ROOT / "reference" / "chart.csv", newline="") as file:
+            table = csv.DictReader(line for line in file if not line.startswith("#"))
+            cls.points = [
+                SimpleNamespace(
+                    **{key: row[key] for key in ("question", "path", "part")},
+                    mesh=int(row["mesh"]),
+                    dt=float(row["dt_s"]),
+                    cost=float(row["cost_s"]),
+                    error=float(row["error"]),
+                    pareto=row["pareto"] == "1",
+                )
+                for row in table
+            ]
+        cls.figure = draw(cls.points, scratch() / "chart.png")
+
+    def test_words_cover_neither_one_another_nor_points_and_stay_in_their_panel(self):
+        (legend,) = self.figure.legends
+        for axes in self.figure.axes:
+            boxes = [words_box(label) for label in axes.texts]
+            self.assertGreater(len(boxes), 2)
+            for one, other in itertools.combinations([*boxes, legend.get_window_extent()], 2):
+                self.assertFalse(one.overlaps(other))
+            for line in axes.lines:
+                if line.get_linestyle() == "None":
+                    (place,) = axes.transData.transform(np.transpose(line.get_data()))
+                    self.assertFalse(any(box.contains(*place) for box in boxes))
+            for box in boxes:
+                self.assertTrue(axes.bbox.fully_contains(*box.min), box)
+                self.assertTrue(axes.bbox.fully_contains(*box.max), box)
+
+    def test_every_part_left_out_and_every_step_of_the_front_is_named(self):
+        told = [label.get_text() for axes in self.figure.axes for label in axes.texts]
+        parts = [p.part for p in self.points if p.part]
+        self.assertEqual(len(parts), sum(any(p in words for p in set(parts)) for words in told))
+        front = [f"{p.dt:.2g} s" for p in self.points if p.pareto]
+        self.assertEqual(len(front), sum(words.endswith(" s") for words in told))
+        self.assertEqual(set(front), {words.split(", ")[-1] for words in told if " s" in words})
+
+    def test_axes_keep_clear_of_their_neighbours(self):
+        boxes = [axes.get_tightbbox() for axes in self.figure.axes]
+        for left, right in itertools.pairwise(boxes):
+            self.assertLess(left.x1, right.x0)
 
 
 if __name__ == "__main__":

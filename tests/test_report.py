@@ -6,19 +6,25 @@ import io
 import json
 import re
 import shutil
+import sys
 import time
 import unittest
 from pathlib import Path
 from unittest import mock
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.image import imread
 from membrane import report, sail
 from membrane.geometry import crease_angles
 from membrane.mesh import sail_mesh
 from membrane.output import list_series, read_frame, read_history
 from membrane.parameters import SailParameters
-from support import CommandTest, free_hub_run, pattern_run, scratch, short_run
+from support import ROOT, CommandTest, free_hub_run, pattern_run, scratch, short_run
+
+sys.path.append(str(ROOT / "scripts"))
+
+from sweeping.page import render  # noqa: E402  (found only now)
 
 try:
     from selenium import webdriver
@@ -31,6 +37,7 @@ except ImportError:
     webdriver = None
 
 BROWSER, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
+VIRIDIS = colormaps["viridis"](np.arange(256))[:, :3]
 PATIENCE = 60  # with a browser that draws in software, on a machine that does other things [s]
 SWITCHES = (
     "--headless=new",
@@ -45,6 +52,35 @@ SWITCHES = (
 def unpacked(text, kind):
     """Array from the page's base64."""
     return np.frombuffer(base64.b64decode(text), dtype=kind)
+
+
+def hue(colours):
+    """Directions (n, 3) of colours (n, 3) in linear light: the same however bright it is."""
+    linear = np.where(colours > 0.04045, ((colours + 0.055) / 1.055) ** 2.4, colours / 12.92)
+    return linear / np.linalg.norm(linear, axis=1)[:, None]
+
+
+class FirstView:
+    """The page's first view of the short run, on a canvas of `shape` (height, width, 3)."""
+
+    def __init__(self, shape):
+        self.height, self.width, _ = shape
+        shapes = list_series(short_run() / "shapes" / "film.pvd")
+        reach = max(np.linalg.norm(read_frame(path)[0], axis=1).max() for _, path in shapes)
+        elevation, azimuth, half = np.radians([32, -65, 14])
+        across = np.cos(elevation) * np.array([np.cos(azimuth), np.sin(azimuth)])
+        towards = np.array([*across, np.sin(elevation)])
+        right = np.cross([0, 0, 1], towards)
+        right /= np.linalg.norm(right)
+        self.axes = np.array([right, np.cross(towards, right), towards])
+        self.distance = 1.04 * reach / np.tan(half)  # of the eye [m]
+        self.scale = 0.5 * self.height / np.tan(half)  # pixels of 1 m in 1 m distance
+
+    def colour(self, image, point):
+        """Colour (3,) of an image where it shows a point (3,) [m]."""
+        x, y, z = self.axes @ point
+        pixels = self.scale / (self.distance - z) * np.array([x, y])
+        return image[round(0.5 * self.height - pixels[1]), round(0.5 * self.width + pixels[0])]
 
 
 class TestReportData(unittest.TestCase):
@@ -129,6 +165,8 @@ class TestOtherRuns(unittest.TestCase):
         curves, measures = self.labels(data)
         self.assertEqual(curves, ["area over flat area", "crease angle", "spin", "energy"])
         self.assertIn("spin at the end", measures)
+        energy = [line["label"] for line in data["curves"][-1]["lines"]]
+        self.assertEqual(energy, ["kinetic", "elastic", "creases", "damping work"])
         self.assertIsNone(data["spool"])
         self.assertEqual(len(data["tips"]), 4)
         self.assertEqual(len(data["times"]), 5)
@@ -236,13 +274,16 @@ class TestReportInBrowser(unittest.TestCase):
         shown = re.fullmatch(r"t = (\d+\.\d+) s", self.find("clock").text)
         return float(shown[1]) if shown else None
 
-    def picture(self):
-        """The sail as drawn, without what lies over its edges: (height, width, 3), 0 to 1."""
+    def canvas(self):
+        """The sail as drawn, with what lies over it: (height, width, 3), 0 to 1."""
         self.driver.execute_async_script(
             "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(done));"
         )
-        image = imread(io.BytesIO(self.find("scene").screenshot_as_png), format="png")[..., :3]
-        return image[60:-60]
+        return imread(io.BytesIO(self.find("scene").screenshot_as_png), format="png")[..., :3]
+
+    def picture(self):
+        """The sail as drawn, without what lies over its edges: (height, width, 3), 0 to 1."""
+        return self.canvas()[60:-60]
 
     def golden(self, image):
         """Share of the picture that shows the film."""
@@ -285,6 +326,25 @@ class TestReportInBrowser(unittest.TestCase):
         self.assertLess(self.golden(image), 0.5)
         shades = np.unique((image[image[..., 0] > image[..., 2] + 0.2] * 255).astype(int), axis=0)
         self.assertGreater(len(shades), 10)
+
+    def test_tip_masses_spool_and_scale_are_where_they_are(self):
+        (_, first), *_, (end, last) = list_series(short_run() / "shapes" / "film.pvd")
+        mesh, p = sail_mesh(), SailParameters()
+        for key, now, path in ((Keys.HOME, 0.0, first), (Keys.END, end, last)):
+            self.find("slider").send_keys(key)
+            image = self.canvas()
+            view = FirstView(image.shape)
+            tips = [view.colour(image, tip) for tip in read_frame(path)[0][mesh.tips]]
+            self.assertGreaterEqual(sum(colour.max() < 0.35 for colour in tips), 3)  # before film
+            along = 0.5 * p.spool_radius * np.array([np.cos(p.omega * now), np.sin(p.omega * now)])
+            mark, opposite = ([*place, 0.51 * p.spool_height] for place in (along, -along))
+            self.assertGreater(view.colour(image, mark).min(), 0.75)
+            grey = view.colour(image, opposite)
+            self.assertTrue(0.25 < grey.min() <= grey.max() < 0.6, grey)
+        length, unit = self.find("scale-bar").text.split()
+        self.assertEqual(unit, "mm")
+        wide = view.scale / view.distance * float(length) / 1000
+        self.assertAlmostEqual(self.find("scale-bar").rect["width"], wide, delta=1)
 
     def test_dragging_turns_the_sail_and_reset_turns_it_back(self):
         before = self.picture()
@@ -425,6 +485,49 @@ class TestReportInBrowser(unittest.TestCase):
         self.assertFalse(self.find("legend").is_displayed())
         self.assertEqual(self.changed(seen[0], self.picture()), 0)
 
+    def test_triangles_have_the_colours_of_their_values_at_the_time(self):
+        self.find("folds").click()
+        Select(self.find("field")).select_by_visible_text("crease angle")
+        self.find("slider").send_keys(Keys.END)
+        image = self.canvas()
+        view = FirstView(image.shape)
+        places, fields = read_frame(list_series(short_run() / "shapes" / "film.pvd")[-1][1])
+        middles = places[sail_mesh().triangles].mean(axis=1)
+        shown = hue(np.array([view.colour(image, middle) for middle in middles]))
+        levels = np.rint(255 * np.clip(fields["crease_angle"] / np.pi, 0, 1)).astype(int)
+        self.assertGreater(np.ptp(levels), 100)
+        apart = np.linalg.norm(shown - hue(VIRIDIS)[levels], axis=1)
+        self.assertGreater(np.mean(apart < 0.05), 0.75)  # others lie behind
+
+    def test_film_has_the_colours_of_its_scale_lit_more_or_less(self):
+        self.find("folds").click()
+        Select(self.find("field")).select_by_visible_text("tension")
+        self.find("slider").send_keys(Keys.END)
+        image = self.picture()
+        faces = np.abs(image[:-1, :-1] - image[1:, 1:]).max(axis=2) == 0  # of one colour
+        faces &= np.abs(image[:-1, :-1] - image[0, 0]).max(axis=2) > 0.1
+        pixels = np.round(255 * image[:-1, :-1][faces])
+        shown, counts = np.unique(pixels, axis=0, return_counts=True)
+        self.assertGreater(len(shown), 100)
+        apart = np.linalg.norm(hue(shown / 255)[:, None] - hue(VIRIDIS), axis=2).min(axis=1)
+        self.assertLess(np.average(apart > 0.03, weights=counts), 0.08)  # spool and tips
+
+    def test_key_tells_sides_and_folds_where_they_are_seen(self):
+        def told():
+            return [e.text for e in self.driver.find_elements(By.CSS_SELECTOR, ".key span span")]
+
+        sides, folds = ["top", "bottom"], ["mountain", "valley"]
+        for field, expected in ((0, sides + folds), (1, folds), (4, [])):
+            Select(self.find("field")).select_by_index(field)
+            self.assertEqual([text for text in told() if text], expected)
+        Select(self.find("field")).select_by_index(0)
+        self.find("folds").click()
+        self.assertEqual([text for text in told() if text], sides)
+        self.resize(390, 844)
+        places = (".scale-bar", ".key")
+        bar, key = (self.driver.find_element(By.CSS_SELECTOR, place).rect for place in places)
+        self.assertLess(bar["x"] + bar["width"], key["x"])
+
     def test_turning_with_the_spool_is_another_view_once_it_has_turned(self):
         start = self.picture()
         self.find("corotate").click()
@@ -441,6 +544,28 @@ class TestReportInBrowser(unittest.TestCase):
             wide = self.driver.execute_script("return document.documentElement.scrollWidth")
             self.assertLessEqual(wide, width)
             self.assertGreater(self.golden(self.picture()), 0.005, width)
+
+    def test_page_of_a_sweep_is_no_wider_than_a_phone(self):
+        case = {"state": "complete", "values": ["1000", "30", "0.865", "92.0"] * 2}
+        names = [f"alpha_crease_1000-beta_{beta}" for beta in (3, 30)]
+        page = scratch() / "sweep.html"
+        content = render(
+            states={"complete": 2},
+            pictures={"swing.png": "The swing over alpha_c and beta."},
+            columns=[("time_of_amplitude", "s", "when the largest lag is reached")] * 8,
+            cases=[{**case, "name": n, "place": n, "shapes": f"{n}/shapes.png"} for n in names],
+            others=[],
+            common=[("spin_up_tolerance", "1e-06", "-", "residual energy", "run")],
+            versions={"numpy": "1.24.2"},
+            table="cases.csv",
+            axes=["alpha_crease", "beta"],
+        )
+        page.write_text(content)
+        self.resize(390, 844)
+        self.driver.get(page.as_uri())
+        self.assertIn("Sweep over alpha_crease", self.driver.title)
+        wide = self.driver.execute_script("return document.documentElement.scrollWidth")
+        self.assertLessEqual(wide, 390)
 
 
 class TestCommand(CommandTest):

@@ -48,6 +48,7 @@ INK = (0.12, 0.15, 0.20)
 FOLD_LINE = (0.45, 0.28, 0.10)
 MARK = (0.92, 0.93, 0.95)
 PAPER, SKY = (0.96, 0.97, 0.98), (0.84, 0.88, 0.93)  # background, bottom and top
+LINE_WIDTH = 2  # of fold lines and tethers [pixels]
 MARGIN = 1.1  # of the view beyond what it shows
 TIP_RADIUS = 0.014  # as drawn, over half the view's diagonal; a tip mass has no size in the model
 
@@ -131,7 +132,8 @@ class Stage:
 
     def __init__(self, run):
         self.run, self.shapes = run, run.shapes
-        self.turned = run.turned([time for time, _ in run.shapes])
+        times = [time for time, _ in run.shapes]
+        self.turned = run.turned(times)
         self.points = vtkPoints()
         self.points.SetNumberOfPoints(len(read_frame(run.shapes[0][1])[0]))
         self.turn = vtkTransform()
@@ -145,8 +147,8 @@ class Stage:
         self.window.SetSize(*SIZE)
         self.window.AddRenderer(self.renderer)
         self._add_film()
-        self._add_lines(run.creases, FOLD_LINE, 1.5)
-        self._add_lines(run.cables, INK, 1.5)
+        self._add_lines(run.creases, FOLD_LINE)
+        self._add_lines(run.cables, INK)
         if run.spool:
             self._add_spool()
         self._add_light()
@@ -154,9 +156,8 @@ class Stage:
         self._add_tips(TIP_RADIUS * reach)
         self._add_scale_bar()
         self.clock = self._add_text("", 40, (0.03, 0.90))
-        slowed = self._slowed()
-        if slowed:
-            self._add_text(slowed, 22, (0.03, 0.85))
+        if pace(times):
+            self._add_text(pace(times), 22, (0.03, 0.85))
 
     def picture(self, i):
         """Shape number `i` as an image (height, width, 3) of bytes, top row first."""
@@ -210,12 +211,13 @@ class Stage:
             face.SetSpecularPower(12)
         actor.SetBackfaceProperty(under)
 
-    def _add_lines(self, pairs, colour, width):
+    def _add_lines(self, pairs, colour):
         lines = vtkPolyData()
         lines.SetPoints(self.points)
         lines.SetLines(cell_array(pairs))
         look = self._surface(lines, colour).GetProperty()
-        look.SetLineWidth(width)
+        look.SetLineWidth(LINE_WIDTH)
+        look.RenderLinesAsTubesOn()  # plain lines sink into film that is seen at a slant
         look.LightingOff()
 
     def _add_tips(self, radius):
@@ -329,13 +331,16 @@ class Stage:
         self.renderer.AddActor2D(actor)
         return actor
 
-    def _slowed(self):
-        """How much slower or faster than reality the film is, in words; none if it is not."""
-        times = [time for time, _ in self.shapes]
-        share = RATE * (times[-1] - times[0]) / max(1, len(times) - 1)
-        if share > 1.01:
-            return f"speeded up {share:.3g} times"
-        return f"slowed down {1 / share:.3g} times" if 0 < share < 0.99 else ""
+
+def pace(times):
+    """How much slower or faster than reality a film of shapes at `times` [s] is, in words.
+
+    Rounded, since intervals are whole steps; empty where it is as fast, or has one shape.
+    """
+    share = RATE * (times[-1] - times[0]) / max(1, len(times) - 1)
+    if share > 1.05:
+        return f"speeded up {round(share, 1):g} times"
+    return f"slowed down {round(1 / share, 1):g} times" if 0 < share < 0.95 else ""
 
 
 def _encode(path, pictures):

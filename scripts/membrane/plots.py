@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pictures of results: curves as Figures 8 and 9, shapes as Figure 7, and the folded state.
+"""Pictures of results: curves as Figures 8 and 9, and shapes as Figure 7.
 
 Figures are drawn to files only; no window system is needed.
 """

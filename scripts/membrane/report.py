@@ -226,7 +226,9 @@ def _curves(history):
     for label, unit, factor, lines in CURVES:
         if lines[0][0] not in history:
             continue
-        lines = [(column, name) for column, name in lines if column in history]
+        # What is 0 throughout, as the spool's work where there is none, would hide other lines.
+        told = [line for line in lines if line[0] in history and history[line[0]].any()]
+        lines = told or lines[:1]
         if unit in MILLI and max(np.abs(history[column]).max() for column, _ in lines) < 1:
             unit, factor = MILLI[unit]
         drawn = [

@@ -17,7 +17,7 @@ h1 { font-size: 1.5rem; } h2 { font-size: 1.15rem; margin-top: 2rem; }
 figure { margin: 1rem 0; } figure img { max-width: 100%; }
 figcaption { color: #555; font-size: 0.9rem; }
 .wide { overflow-x: auto; }
-table { border-collapse: collapse; font-size: 0.85rem; }
+table { border-collapse: collapse; font-size: 0.85rem; min-width: 34rem; }
 th, td { padding: 0.25rem 0.6rem; border-bottom: 1px solid #ddd;
          text-align: left; vertical-align: top; }
 th { vertical-align: bottom; }
@@ -27,7 +27,8 @@ td:first-child { white-space: nowrap; }
 tr.diverged td { background: #fdf0e3; }
 tr.damaged td, tr.failed td, tr.killed td, tr.running td, tr.missing td {
      background: #fbe6e6; }
-.shapes { display: grid; grid-template-columns: repeat(auto-fill, minmax(24rem, 1fr)); gap: 1rem; }
+.shapes { display: grid; gap: 1rem;
+          grid-template-columns: repeat(auto-fill, minmax(min(24rem, 100%), 1fr)); }
 </style>
 </head>
 <body>
@@ -37,7 +38,8 @@ tr.damaged td, tr.failed td, tr.killed td, tr.running td, tr.missing td {
 {%- endfor %} All numbers are in <a href="{{ table }}">{{ table }}</a>.</p>
 
 {% for name, caption in pictures.items() %}
-<figure><img src="{{ name }}" alt="{{ caption }}"><figcaption>{{ caption }}</figcaption></figure>
+<figure><a href="{{ name }}"><img src="{{ name }}" alt="{{ caption }}"></a>
+<figcaption>{{ caption }}</figcaption></figure>
 {% endfor %}
 
 {% if others %}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The page of a run: sail, controls, curves and tables, all showing the same time.
 
-import { drawRamp, MOUNTAIN, VALLEY } from "./colours.js";
+import { BOTTOM, drawRamp, MOUNTAIN, TOP, VALLEY } from "./colours.js";
 import { readRun } from "./data.js";
 import { Player } from "./player.js";
 import { Plot } from "./plot.js";
@@ -90,10 +90,12 @@ function showFolds(visible) {
   showKey();
 }
 
-/** Tells mountains from valleys where fold lines are drawn in these colours. */
+/** Tells the film's sides apart, and mountains from valleys, where they are drawn in these colours. */
 function showKey() {
-  const plain = stage?.field?.name !== "crease_angle";
-  page("lines-key").hidden = !(page("folds").checked && plain && run.creases.length);
+  const field = stage?.field?.name;
+  const lines = page("folds").checked && field !== "crease_angle" && run.creases.length > 0;
+  page("key-sides").hidden = Boolean(field);
+  page("key-folds").hidden = !lines;
 }
 
 function addOptions(select, options) {
@@ -165,18 +167,27 @@ function onKey(event) {
   act();
 }
 
-function setUpKey() {
-  const kinds = [
+const KEY = {
+  "key-sides": [
+    ["top", TOP],
+    ["bottom", BOTTOM],
+  ],
+  "key-folds": [
     ["mountain", MOUNTAIN],
     ["valley", VALLEY],
-  ];
-  for (const [name, colour] of kinds) {
-    const entry = document.createElement("span");
-    const swatch = document.createElement("span");
-    swatch.className = "swatch";
-    swatch.style.background = `#${colour.toString(16).padStart(6, "0")}`;
-    entry.append(swatch, name);
-    page("lines-key").append(entry);
+  ],
+};
+
+function setUpKey() {
+  for (const [id, entries] of Object.entries(KEY)) {
+    for (const [name, colour] of entries) {
+      const entry = document.createElement("span");
+      const swatch = document.createElement("span");
+      swatch.className = "swatch";
+      swatch.style.background = `#${colour.toString(16).padStart(6, "0")}`;
+      entry.append(swatch, name);
+      page(id).append(entry);
+    }
   }
 }
 

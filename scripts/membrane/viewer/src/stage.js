@@ -15,6 +15,7 @@ import {
   Group,
   MathUtils,
   Mesh,
+  MeshLambertMaterial,
   MeshStandardMaterial,
   PerspectiveCamera,
   Scene,
@@ -113,12 +114,11 @@ export class Stage {
       this.film.setAttribute(name, attribute.setUsage(DynamicDrawUsage));
     }
     const faces = [FrontSide, BackSide].map((side) => {
-      const material = new MeshStandardMaterial({
+      // Without a sheen: it would mix white into colours that mean a value.
+      const material = new MeshLambertMaterial({
         side,
         vertexColors: true,
         flatShading: true,
-        roughness: 0.55,
-        metalness: 0.05,
         polygonOffset: true, // lines on the film lie in front of it
         polygonOffsetFactor: 1,
         polygonOffsetUnits: 1,
