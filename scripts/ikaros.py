@@ -8,11 +8,12 @@ Known of the flight: size, film, masses, and the spin, 2.5 rpm with the arms out
 the second stage. Fold lines, tethers and damping are not known here: they are those of the paper's
 sail, scaled. The devices' mass is spread evenly over the film.
 
-The paper's fold lines are parallel to the outer edges, so that the tips of the folded cross lie as
-far out as half an edge is long, some 7 m. In flight the arms were out to about 10 m: a cross and a
-flat square of nearly the same moment of inertia. The scene's cross has less than half of that.
-It starts with the angular momentum of the flight, at more than twice its spin, and must
-end at the same 2.5 rpm; with `--spin 2.5` it has the flight's spin and ends at 1.1 rpm.
+A cross of folded petals cannot reach the flat sail's 9.9 m: from the middle of an outer edge, which
+the guide bars hold near the body, to the tip it is half an edge, 7 m. Were the tips 9.9 m out, the
+edges between them would be straight and the sail flat. Estimates of the flight's cross that take
+arms of 10 m find it as heavy to turn as the flat square; the scene's has less than half of that. It
+starts with the angular momentum that the flat sail has at the flight's 2.5 rpm, at more than twice
+that spin, and must end at 2.5 rpm; with `--spin 2.5` it ends at 1.1 rpm.
 """
 
 import argparse
@@ -38,7 +39,7 @@ THICKNESS = 7.5e-6  # m, of the polyimide film
 AREAL_MASS = 0.081  # kg/m2, with solar cells and liquid-crystal devices
 HUB_INERTIA = 67.0  # kg m2, of the body, fitted to the spin from 25 to 2.5 rpm in stage 1
 FLIGHT_SPIN = 2.5  # rpm, with the arms out, and again after stage 2
-FLIGHT_CROSS = 779.0  # kg m2, of body and arms in flight, by the same fit
+FLIGHT_CROSS = 779.0  # kg m2, of body and arms of 10 m, by the same fit; the flat sail's is 780
 STEP = 0.5  # of the critical time step
 SHOWN = (0.0, 1.0, 2.0, 4.0, 12.0)  # s, and the end
 OPTIONS = ("fold_lines", "refine", "duration", "zeta")

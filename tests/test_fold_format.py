@@ -57,6 +57,11 @@ class TestReading(unittest.TestCase):
             changed = {**PATCH, "edges_assignment": [*"BBBB", letter], "edges_foldAngle": [0] * 5}
             self.assertEqual(read_fold(written(changed)).frames[0].letters[4], letter)
 
+    def test_an_edge_that_does_not_fold_may_have_null_for_its_angle(self):
+        """So Origami Simulator writes its borders."""
+        changed = {**PATCH, "edges_foldAngle": [None, None, 0, None, -90]}
+        self.assertEqual(read_fold(written(changed)).frames[0].angles.tolist(), [0, 0, 0, 0, -90])
+
     def test_units_are_those_of_the_specification(self):
         self.assertAlmostEqual(UNITS["in"], 25.4 * UNITS["mm"])
         self.assertAlmostEqual(UNITS["pt"] * 72, UNITS["in"])
@@ -95,10 +100,10 @@ class TestReading(unittest.TestCase):
         for changes, parts in (
             ({"edges_assignment": [*"BBBBX"]}, ("edges_assignment[4]", "'X'", "B, M, V")),
             ({"edges_assignment": [*"BBB"]}, ("edges_assignment", "3 letters for 5 edges")),
-            ({"edges_foldAngle": [0, 0, 0, None, -90]}, ("edges_foldAngle[3]", "no angle")),
             ({"edges_foldAngle": [0, 0, 0, 0]}, ("edges_foldAngle", "4 angles for 5 edges")),
             ({"edges_foldAngle": [0, 0, 0, 0, 200]}, ("edges_foldAngle[4]", "-180 to 180")),
             ({"edges_foldAngle": [0, 0, 0, 0, 90]}, ("edges_foldAngle[4]", "mountains")),
+            ({"edges_foldAngle": [0, 0, 0, 0, None]}, ("edges_foldAngle[4]", "no angle")),
             ({"edges_vertices": [[0, 9]]}, ("edges_vertices[0]", "9", "the last is 3")),
             ({"edges_vertices": [[2, 2]]}, ("edges_vertices[0]", "vertex 2 to itself")),
             ({"edges_vertices": [[0, 1, 2]]}, ("edges_vertices[0]", "an edge has 2")),

@@ -7,7 +7,7 @@ import unittest
 import membrane
 import numpy as np
 from membrane import scene, spool
-from support import ROOT, O, SceneTest, engines_by_class, node_states, release_sail
+from support import ROOT, O, SceneTest, engines_by_class, node_states, release_sail, scratch
 
 sys.path.append(str(ROOT / "scripts"))
 
@@ -241,6 +241,19 @@ class TestLimits(SceneTest):
         heavy = star(inertia=1e3).forces.criticalTimeStep()
         light = star(inertia=1e-9).forces.criticalTimeStep()
         self.assertLess(light, 0.5 * heavy)
+
+
+class TestLoading(SceneTest):
+    def test_a_loaded_scene_knows_its_hub(self):
+        """Else a run that goes on after the spin-up would never let it go."""
+        made = star()
+        path = str(scratch() / "star.yade.gz")
+        O.save(path, quiet=True)
+        driven, spin = sorted(made.driven), made.hub.spin
+        O.load(path, quiet=True)
+        again = scene.loaded()
+        self.assertEqual(again.hub.spin, spin)
+        self.assertEqual(sorted(again.driven), driven)
 
 
 class TestWatch(SceneTest):

@@ -5,7 +5,7 @@ import unittest
 from dataclasses import replace
 
 import numpy as np
-from membrane import geometry
+from membrane import geometry, pattern_mesh
 from membrane.fold_format import FoldFile, FoldFrame
 from membrane.pattern_mesh import mean_value_coordinates, mesh_pattern
 from membrane.patterns import crease_pattern, find_faces, fold_by_angles, nearest_pose
@@ -170,6 +170,38 @@ class TestMesh(unittest.TestCase):
         rim = geometry.side_lengths(mesh.nodes, sides[shares == 1]).sum()
         self.assertAlmostEqual(rim, 8 + 2, places=12)
 
+    def test_narrow_corners_and_strips_get_no_flat_triangles(self):
+        """Equation (5) would give them a negative stiffness, and the sail would be refused."""
+        right, top = ((3, y) for y in (0.6, 1.2, 2)), ((x, 3) for x in (2.4, 1.8, 1.2, 0.6))
+        points = [*SQUARE, *right, *top]
+        rim = [(0, 1), (1, 4), (4, 5), (5, 6), (6, 2), (2, 7), (7, 8), (8, 9), (9, 10), (10, 3)]
+        edges = [*rim, (3, 0), *((0, i) for i in (4, 5, 6, 7, 8, 9, 10))]
+        pattern = pattern_of(frame(points, edges, "B" * 11 + "MVMVMVM"))
+        for size in (0.35, 0.6):
+            mesh = mesh_pattern(pattern, size)
+            plain = pattern_mesh._with_gmsh(pattern, size)
+            angles = [geometry.triangle_angles(m.nodes, m.triangles).max() for m in (plain, mesh)]
+            self.assertGreater(np.degrees(angles[0]), 117)
+            self.assertLess(np.degrees(angles[1]), 115.1)
+            self.assertAlmostEqual(mesh.area, 9)
+            creased = geometry.side_lengths(mesh.nodes, mesh.creases).sum()
+            expected = geometry.side_lengths(pattern.vertices, pattern.edges[11:]).sum()
+            self.assertAlmostEqual(creased, expected)
+            geometry.crease_corners(mesh.triangles, mesh.creases)
+
+    def test_nodes_of_a_split_triangle_start_on_the_folded_faces(self):
+        points = [(0, 0), (3, 0), (3, 0.4), (0, 0.4), (3, 3), (0, 3)]
+        edges = [(0, 1), (1, 2), (3, 0), (2, 4), (4, 5), (5, 3), (3, 2)]
+        angles = np.array([0.0] * 6 + [70.0])
+        pattern = pattern_of(frame(points, edges, "B" * 6 + "V", angles=angles))
+        mesh = mesh_pattern(pattern, 0.7)
+        plain = pattern_mesh._with_gmsh(pattern, 0.7)
+        self.assertGreater(len(mesh.nodes), len(plain.nodes))  # else nothing has been split
+        sides = geometry.unique_sides(mesh.triangles)[0]
+        np.testing.assert_allclose(
+            geometry.side_lengths(mesh.start, sides), geometry.side_lengths(mesh.nodes, sides)
+        )
+
     def test_a_size_out_of_range_is_refused(self):
         pattern = pattern_of(frame(SQUARE, ring(0, 4), "BBBB"))
         for size in (0.0, -1.0, float("nan"), 1e-4):
@@ -242,6 +274,33 @@ class TestFoldedStart(unittest.TestCase):
         form = replace(self.strip(50, 0), coords=1.02 * pattern.folded, classes=("foldedForm",))
         with self.assertRaisesRegex(ValueError, "changes the length of edge"):
             pattern_of(replace(self.strip(50, 0), angles=None), form)
+
+    def test_what_is_folded_flat_starts_unfolded(self):
+        """It has no height to open from: spun, it would stay closed for ever."""
+        self.assertIsNone(pattern_of(self.strip(180, -180)).folded)
+        self.assertIsNotNone(pattern_of(self.strip(179, -180)).folded)
+        flat = replace(self.strip(180, -180), angles=None)
+        shut = fold_by_angles(replace(pattern_of(flat), angles=self.strip(180, -180).angles))
+        for upright in (shut, shut[:, [1, 2, 0]]):
+            form = replace(flat, coords=upright, classes=("foldedForm",))
+            self.assertIsNone(pattern_of(flat, form).folded)
+            with self.assertRaisesRegex(ValueError, "frame 1 is folded flat"):
+                pattern_of(flat, form, start=1)
+        moved = replace(flat, coords=flat.coords[:, [1, 2, 0]])  # not folded at all
+        self.assertIsNotNone(pattern_of(flat, moved, start=1).folded)
+
+    def test_a_folded_form_of_another_sheet_is_passed_over(self):
+        flat = replace(self.strip(50, 0), angles=None)
+        other = replace(flat, coords=np.vstack([flat.coords, [0, 0, 1]]), classes=("foldedForm",))
+        form = replace(flat, coords=pattern_of(self.strip(50, 0)).folded, classes=("foldedForm",))
+        np.testing.assert_array_equal(pattern_of(flat, other, form).folded, form.coords)
+
+    def test_a_sheet_that_starts_flat_needs_no_folded_form(self):
+        points, edges = [*SQUARE, (1.5, 1.5)], [*ring(0, 4), *((4, i) for i in range(4))]
+        sheet = frame(points, edges, "BBBBVVVV", angles=np.array([0.0, 0, 0, 0, 40, 40, 40, 40]))
+        with self.assertRaisesRegex(ValueError, "do not go together"):
+            pattern_of(sheet)
+        self.assertIsNone(pattern_of(sheet, unfolded=True).folded)
 
     def test_letters_meant_from_below_are_turned_over(self):
         flat, pattern = replace(self.strip(60, 60), angles=None), pattern_of(self.strip(60, 60))

@@ -208,6 +208,25 @@ class TestCase(SweepTest):
         self.same(quiet, folder)
         self.assertEqual((folder / "report.html").exists(), report.TEMPLATE.is_file())
 
+    def test_case_on_a_free_hub_killed_twice_leaves_the_same_files(self):
+        """In the spin-up, after which the hub must be let go, and in the run."""
+        space = ["--hub-inertia", "1e-5", "--gravity", "0", "--air-density", "0"]
+        options = [*SHORT, *space, "--duration", "0.03", "--no-pictures", *OFTEN]
+        quiet, folder = scratch() / "hub", scratch() / "killed_hub" / "case"
+        start_case(quiet, *options).communicate()
+        spin = read_history(quiet / "history.csv")["hub_spin"]
+        self.assertGreater(np.ptp(spin), 1e-3 * spin[0])
+        for reached in (lambda: saved(folder.parent) > 0, lambda: rows(part_of(folder)) > 5):
+            process = start_case(folder, *options)
+            while process.poll() is None and not reached():
+                time.sleep(0.001)
+            kill(process)
+            self.assertFalse(folder.exists())
+        process = start_case(folder, *options)
+        said, _ = process.communicate()
+        self.assertEqual(process.returncode, 0, said)
+        self.same(quiet, folder)
+
     def test_finished_case_is_left_alone_and_another_is_refused(self):
         before = {path: path.stat().st_mtime_ns for path in diverged().rglob("*")}
         process = start_case(diverged(), *TOO_LONG)

@@ -53,7 +53,8 @@ class FoldFrame:
     letters : (E,) str or None
         B border, M mountain, V valley, F flat, U unassigned, C cut, J join.
     angles : (E,) float or None
-        Fold angles [deg] in [-180, 180], positive valley, negative mountain.
+        Fold angles [deg] in [-180, 180], positive valley, negative mountain. In files null stands
+        for 0 on edges that do not fold.
     faces : tuple of (n,) int or None
         Vertices of each face, counter-clockwise seen from the top.
     unit : str
@@ -251,7 +252,7 @@ class _FrameReader:
         size = 0 if edges is None else len(edges)
         letters = get("edges_assignment", _letters, size)
         name = "edges_foldAngle" if "edges_foldAngle" in raw else "edges_foldAngles"  # 1.0's name
-        angles = get(name, _angles, size)
+        angles = self._without_gaps(number, letters, get(name, _angles, size))
         self._check_directions(number, letters, angles)
         return FoldFrame(
             coords=coords,
@@ -265,6 +266,17 @@ class _FrameReader:
             **{name: get(key, _text) or "" for name, key in _TEXTS.items()},
             custom={key: value for key, value in raw.items() if ":" in key},
         )
+
+    def _without_gaps(self, number, letters, angles):
+        """The angles (E,), 0 for null, which Origami Simulator writes where an edge has none."""
+        gaps = np.zeros(0, dtype=bool) if angles is None else np.isnan(angles)
+        if not np.any(gaps):
+            return angles
+        folds = gaps if letters is None else gaps & np.isin(letters, ("M", "V"))
+        if np.any(folds):
+            place = _place(number, f"edges_foldAngle[{int(np.argmax(folds))}]")
+            raise BadFile(self.path, place, "has no angle (null)")
+        return _frozen(np.where(gaps, 0.0, angles))
 
     def _check_directions(self, number, letters, angles):
         """Refuse mountains with a valley's angle, and the other way about."""
@@ -378,11 +390,9 @@ def _letters(path, place, value, size):
 
 
 def _angles(path, place, value, size):
-    """Fold angles (E,) [deg]."""
+    """Fold angles (E,) [deg], not a number for null."""
     for i, angle in enumerate(_per_edge(path, place, value, size, "angles")):
-        if angle is None:
-            raise BadFile(path, f"{place}[{i}]", "has no angle (null)")
-        if not (_is_number(angle) and -180 <= angle <= 180):
+        if angle is not None and not (_is_number(angle) and -180 <= angle <= 180):
             raise BadFile(
                 path, f"{place}[{i}]", f"is {shown(angle)}; must be degrees from -180 to 180"
             )

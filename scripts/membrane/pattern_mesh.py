@@ -2,18 +2,21 @@
 """Meshes of crease patterns by gmsh: triangles whose sides run along every edge of the pattern."""
 
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .geometry import MOUNTAIN, VALLEY, area_vectors, crease_angles, side_rows, triangle_areas
-from .geometry import unique_sides
+from .geometry import triangle_angles, unique_sides
 from .patterns import face_pairs
 
 MOST_TRIANGLES = 2_000_000
 DEFAULT_TRIANGLES = 800  # about as many as the paper's sail has
 GMSH_TRIANGLE = 2
 BARELY = 0.05  # rad
+FLATTEST = np.radians(115)  # of a triangle's angle; near 120 degrees (5) gives negative stiffness
+SPLITS = 20  # rounds of splitting flat triangles, at most
+SHORTEST = 0.05  # of the mesh's sides: what splitting may leave
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +93,7 @@ def mesh_pattern(pattern, size=None):
         raise ValueError(f"size = {size} m: must be finite and > 0")
     if pattern.area / size**2 > MOST_TRIANGLES / 2.3:
         raise ValueError(f"size = {size} m: would make more than {MOST_TRIANGLES} triangles")
-    found = _with_gmsh(pattern, size)
+    found = _without_flat_triangles(_with_gmsh(pattern, size), SHORTEST * size)
     nodes = found.nodes
     start = None if pattern.folded is None else _carried_over(pattern, found)
     sides = {e: found.edge_sides(e) for e in range(len(pattern.edges))}
@@ -146,7 +149,7 @@ class _Raw:
     """What gmsh made: `nodes` (N, 3), `triangles` (T, 3), and which nodes lie where.
 
     `on_edge`: for each edge its nodes in order, from the first vertex to the second. `in_face`:
-    for each face the nodes inside it.
+    for each face the nodes inside it. `face_of` (T,): the face of each triangle.
     """
 
     nodes: np.ndarray
@@ -154,6 +157,7 @@ class _Raw:
     on_edge: dict
     in_face: dict
     vertex_node: dict
+    face_of: np.ndarray
 
     def edge_sides(self, e):
         chain = self.on_edge.get(e, ())
@@ -271,20 +275,87 @@ def _collect(gmsh, pattern):
         away = [np.linalg.norm(nodes[i] - pattern.vertices[a]) for i in inner]
         chain = [vertex_node[a], *inner[np.argsort(away)].tolist(), vertex_node[b]]
         on_edge[tag - 1] = np.array(chain)
-    in_face, triangles = {}, []
+    in_face, triangles, face_of = {}, [], []
     for _, tag in sorted(gmsh.model.getEntities(2)):
         in_face[tag - 1] = np.array(take(2, tag), dtype=int)
         kinds, _, corners = mesh.getElements(2, tag)
         if list(kinds) != [GMSH_TRIANGLE]:
             raise ValueError(f"gmsh finds no triangles in face {tag - 1} of the pattern")
         triangles.append([index[node] for node in corners[0].tolist()])
+        face_of += [tag - 1] * (len(corners[0]) // 3)
     places = np.array(nodes)
     corners = np.concatenate([np.reshape(t, (-1, 3)) for t in triangles])
     upper = area_vectors(places, corners)[:, 2] > 0
     corners[~upper] = corners[~upper][:, ::-1]
     if np.min(np.abs(area_vectors(places, corners)[:, 2])) <= 0:
         raise ValueError("gmsh made a triangle without area; try another size")
-    return _Raw(places, corners, on_edge, in_face, vertex_node)
+    return _Raw(places, corners, on_edge, in_face, vertex_node, np.array(face_of))
+
+
+def _without_flat_triangles(raw, shortest):
+    """The mesh with the longest side of each triangle that is too flat split below its apex.
+
+    Such triangles lie in narrow corners and strips of a pattern. Sides shorter than `shortest` [m]
+    are not made; of all rounds the one with the least flat triangle is taken.
+    """
+    best = raw
+    for _ in range(SPLITS):
+        angles = triangle_angles(raw.nodes, raw.triangles)
+        flat = np.flatnonzero(angles.max(axis=1) > FLATTEST)
+        finer = _split(raw, flat, angles[flat].argmax(axis=1), shortest)
+        if finer is None:
+            break
+        raw = finer
+        best = min(best, raw, key=_largest_angle)
+    return best
+
+
+def _largest_angle(raw):
+    return triangle_angles(raw.nodes, raw.triangles).max()
+
+
+def _split(raw, flat, apexes, shortest):
+    """`raw` with a node more on the side opposite corner `apexes` of each of the triangles `flat`.
+
+    Where two of them touch, the later one waits. None if there is nothing to split.
+    """
+    nodes, triangles, face_of = raw.nodes.tolist(), raw.triangles.tolist(), raw.face_of.tolist()
+    on_edge, in_face = dict(raw.on_edge), dict(raw.in_face)
+    edge_of = {frozenset(side): e for e in on_edge for side in zip(on_edge[e][:-1], on_edge[e][1:])}
+    owner = {(t[i - 1], t[i]): k for k, t in enumerate(triangles) for i in range(3)}
+    split = set()
+    for k, apex in zip(flat.tolist(), apexes.tolist()):
+        c, a, b = np.roll(triangles[k], -apex).tolist()
+        both = [k] if owner.get((b, a)) is None else [k, owner[b, a]]
+        if split.intersection(both):
+            continue
+        along, away = raw.nodes[b] - raw.nodes[a], raw.nodes[c] - raw.nodes[a]
+        length, foot = np.linalg.norm(along), along @ away / np.linalg.norm(along)
+        if not shortest <= foot <= length - shortest:
+            continue
+        split.update(both)
+        middle = len(nodes)
+        nodes.append(raw.nodes[a] + foot / length * along)
+        for t in both:
+            triangles.append([middle if node == a else node for node in triangles[t]])
+            triangles[t] = [middle if node == b else node for node in triangles[t]]
+            face_of.append(face_of[t])
+        e = edge_of.get(frozenset((a, b)))
+        if e is None:
+            in_face[face_of[k]] = np.append(in_face[face_of[k]], middle)
+        else:
+            chain = on_edge[e].tolist()
+            on_edge[e] = np.insert(on_edge[e], max(chain.index(a), chain.index(b)), middle)
+    if not split:
+        return None
+    return replace(
+        raw,
+        nodes=np.array(nodes),
+        triangles=np.array(triangles),
+        on_edge=on_edge,
+        in_face=in_face,
+        face_of=np.array(face_of),
+    )
 
 
 # ------------------------------------------------------------------------ the folded start

@@ -150,7 +150,7 @@ def read_sheet(path, p):
     content = read_fold(path)
     try:
         pattern = crease_pattern(
-            content, p.unit or None, None if p.start_frame < 0 else p.start_frame
+            content, p.unit or None, None if p.start_frame < 0 else p.start_frame, p.flat
         )
         return mesh_pattern(pattern, p.size or None)
     except ValueError as error:

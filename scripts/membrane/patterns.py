@@ -67,12 +67,13 @@ class CreasePattern:
         return float(sum(_loop_area(self.vertices, loop) for loop in loops))
 
 
-def crease_pattern(content, unit=None, start=None):
+def crease_pattern(content, unit=None, start=None, unfolded=False):
     """The pattern that a FOLD file describes, with its folded start if the file has one.
 
     The flat sheet is the first frame that lies in the plane and is no folded form; if there is
     none, the folded form is unrolled. The folded start is the frame `start`; by default the first
-    folded form in space with the same vertices, or else what the fold angles give, or else None.
+    folded form in space with as many vertices, or else what the fold angles give, or else None;
+    None, too, where that is folded flat: it has no height to open from.
 
     Parameters
     ----------
@@ -81,6 +82,8 @@ def crease_pattern(content, unit=None, start=None):
         Length of the file's unit [m]; needed where the file names no physical one.
     start : int, optional
         Number of a frame, 0 the key frame.
+    unfolded : bool
+        The sheet will start flat: no folded start is an error.
 
     Returns
     -------
@@ -97,7 +100,8 @@ def crease_pattern(content, unit=None, start=None):
     flat = next((i for i, frame in enumerate(frames) if _is_flat(frame)), None)
     form = start
     if form is None:
-        form = next((i for i, frame in enumerate(frames) if _is_folded(frame)), None)
+        count = None if flat is None else len(frames[flat].coords)
+        form = next((i for i, frame in enumerate(frames) if _is_folded(frame, count)), None)
     if flat is None and form is None:  # folded flat only: enough to unroll
         form = next((i for i, frame in enumerate(frames) if frame.coords is not None), None)
     if form is None and flat is None:
@@ -117,12 +121,35 @@ def crease_pattern(content, unit=None, start=None):
         pattern = replace(pattern, vertices=_unrolled(pattern))
     pattern = _with_faces(pattern)
     _check(pattern)
-    if form is not None and form != flat:
-        folded = _fitting(pattern, frames[form], _metres(frames[form], unit), form)
-        return replace(pattern, folded=folded)
+    try:
+        folded = _folded_start(pattern, frames, form if form != flat else None, unit)
+        if folded is not None and _is_folded_flat(pattern, folded):
+            if start is not None:
+                raise ValueError(f"frame {start} is folded flat: it has no height to open from")
+            folded = None
+    except ValueError:
+        if not unfolded:
+            raise
+        folded = None
+    return replace(pattern, folded=folded)
+
+
+def _folded_start(pattern, frames, form, unit):
+    """Vertices (V, 3) [m] of frame `form`, if not None, or as the fold angles say, or None."""
+    if form is not None:
+        return _fitting(pattern, frames[form], _metres(frames[form], unit), form)
     if pattern.angles is not None and np.any(pattern.angles != 0):
-        return replace(pattern, folded=fold_by_angles(pattern))
-    return pattern
+        return fold_by_angles(pattern)
+    return None
+
+
+def _is_folded_flat(pattern, places):
+    """Whether with its vertices at `places` (V, 3) all of the sheet lies in one plane, some of it
+    turned over.
+    """
+    normals = np.array([_normal(places[face]) for face in pattern.faces])
+    turned = normals @ normals[0]
+    return bool(np.all(np.abs(turned) > 1 - SAME_PLACE) and np.any(turned < 0))
 
 
 def _is_flat(frame):
@@ -132,11 +159,15 @@ def _is_flat(frame):
     return np.ptp(frame.coords[:, 2]) <= SAME_PLACE * np.max(np.ptp(frame.coords, axis=0))
 
 
-def _is_folded(frame):
-    """Whether a frame is a folded form in space: flat-folded ones have no height to open from."""
+def _is_folded(frame, count=None):
+    """Whether a frame is a folded form in space, of `count` vertices (None: of any number).
+
+    Flat-folded ones have no height to open from.
+    """
     return (
         frame.coords is not None
         and len(frame.coords) >= 3
+        and count in (None, len(frame.coords))
         and "creasePattern" not in frame.classes
         and np.ptp(frame.coords[:, 2]) > SAME_PLACE * np.max(np.ptp(frame.coords, axis=0))
     )

@@ -337,6 +337,8 @@ def loaded():
         found.setdefault(type(engine).__name__, engine)
     forces = found.get("MembraneIntegrator") or found["MembraneForceEngine"]
     rotation, turning = found["RotationEngine"], found["SpoolRotation"]
+    free = found.get("FreeHub")
+    on_hub = [forces.membrane.bodyIds[node] for node in free.nodes] if free else []
     return MembraneScene(
         forces.membrane,
         forces,
@@ -347,7 +349,8 @@ def loaded():
         found["MembraneLedger"],
         found.get("MembraneWatch"),
         found["ForceResetter"],
-        [*turning.ids, *rotation.ids],
+        [*turning.ids, *rotation.ids, *on_hub],
+        free,
     )
 
 
