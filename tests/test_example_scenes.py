@@ -29,9 +29,13 @@ class TestIkaros(CommandTest):
         self.assertLess(found["largest_unexplained_energy"], 1e-4 * energy)
         self.assertGreater((folder / "ikaros.png").stat().st_size, 50_000)
 
-    def test_bad_value_ends_with_one_sentence(self):
-        done = run_yade(self.SCRIPT, "--out", scratch() / "refused", "--zeta=-1")
-        self.ends_with_one_sentence(done, "ikaros", "ikaros: zeta = -1.0 must be >= 0")
+    def test_bad_values_end_with_one_sentence(self):
+        for option, said in (
+            ("--zeta=-1", "zeta = -1.0 must be >= 0"),
+            ("--spin=0", "omega = 0.0 rad/s must be > 0"),
+        ):
+            done = run_yade(self.SCRIPT, "--out", scratch() / "refused", option, "--duration", "0")
+            self.ends_with_one_sentence(done, "ikaros", f"ikaros: {said}")
 
 
 class TestGuide(unittest.TestCase):

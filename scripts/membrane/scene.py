@@ -465,7 +465,7 @@ def spin_up(
     begun=None,
     keep=None,
 ):
-    """Bring the sail to rest in a frame that turns at `omega` (MODEL, folding step 3).
+    """Bring the sail to rest in a frame that turns at `omega` (paper, 3.3).
 
     Parameters
     ----------
@@ -529,7 +529,7 @@ def spin_up(
 
 
 def release(sail, omega, held):
-    """Go over to the inertial frame and let the `held` nodes go (MODEL, folding step 4).
+    """Go over to the inertial frame and let the `held` nodes go (paper, 3.3).
 
     At the release v = omega x r everywhere. The leapfrog's velocities lie half a step before, and
     follow from the accelerations of the nodes once they are free: v - a dt / 2.
