@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The pictures' scale bar: as long as it says, across the view, within the picture."""
+"""Pictures: the scale bar is as long as it says, and curves stand clear of the frame."""
 
 import unittest
+from unittest import mock
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -39,6 +40,18 @@ class TestScaleBar(unittest.TestCase):
         for x, y in (left, right):
             self.assertTrue(0 < x < 1 and 0 < y < 0.5, (x, y))
         self.assertGreater(right[0] - left[0], 0.1)
+
+
+class TestHistory(unittest.TestCase):
+    def test_a_curve_that_stays_where_it_is_stands_clear_of_the_frame(self):
+        history = {"time": [0.0, 0.1, 0.2], "area": [0.999, 1.0, 0.999], "none": [0.0, 0.0, 0.0]}
+        with mock.patch.object(Figure, "savefig", autospec=True) as save:
+            plots.plot_history(history, {"area": "area [-]", "none": "none [-]"}, "no.png")
+        figure = save.call_args[0][0]
+        for axes, top in zip(figure.axes, (1.0, 0.0)):
+            low, high = axes.get_ylim()
+            self.assertEqual(low, 0)
+            self.assertGreater(high - top, 0.03 * (high - low))
 
 
 if __name__ == "__main__":

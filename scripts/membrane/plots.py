@@ -62,7 +62,7 @@ def plot_history(history, columns, path):
         axes.plot(history["time"], history[name], color="C0")
         axes.set(ylabel=label)
         if np.min(history[name]) >= 0:
-            axes.set(ylim=(0, None))
+            axes.set(ylim=(0, 1.05 * np.max(history[name]) or None))
         axes.grid(alpha=0.3)
         axes.margins(x=0)
     every[-1].set(xlabel="time [s]")
