@@ -42,7 +42,8 @@ class TestGuide(unittest.TestCase):
     def test_its_own_mesh_opens_and_keeps_its_energy(self):
         text = (ROOT / "reference" / "guide.md").read_text()
         script = scratch() / "sheet.py"
-        script.write_text(text.split("```python\n")[1].split("```")[0])
+        section = text.split("\n## 5. Your own mesh\n")[1]
+        script.write_text(section.split("```python\n")[1].split("```")[0])
         done = run_yade(script, folder=scratch())
         self.assertEqual(done.returncode, 0, done.stderr)
         said = re.search(r"opened to (\d+) degrees; energy from nowhere (\S+) J", done.stdout)
