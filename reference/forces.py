@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The paper's forces a second time, in NumPy, to hold the plugin against.
 
-Written from the paper's equations (4)...(10) and the readings in MODEL.md, not from the plugin's
+Written from the paper's equations (4)...(10) and the readings in model.md, not from the plugin's
 sources. Nothing here imports YADE or the plugin, and nothing of the plugin imports this.
 
-Two bounds are not in the paper or MODEL.md but among the README's assumptions: levers of creases
-stop growing where a triangle has collapsed (`collapsed`), and damping never makes a taut cable push
+Two bounds are not in the paper but among the README's assumptions: levers of creases stop
+growing where a triangle has collapsed (`collapsed`), and damping never makes a taut cable push
 (`may_push`). Both are on by default; collapsed=0 and may_push=True give the equations as they are.
 
 Shapes: N nodes, T triangles, M sides, C creases. SI units, angles in radians. Forces are those on

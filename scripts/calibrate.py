@@ -66,9 +66,15 @@ def command_line():
         "differences grow, and single curves say little (default 0.1)",
     )
     parser.add_argument(
-        "--out", type=Path, default=Path("out/calibration"), help="folder of the results"
+        "--out",
+        type=Path,
+        default=Path("out/calibration"),
+        metavar="DIR",
+        help="default: out/calibration",
     )
-    parser.add_argument("--seed", type=int, default=0, help="of the points that are tried")
+    parser.add_argument(
+        "--seed", type=int, default=0, metavar="N", help="of the points that are tried (default 0)"
+    )
     arguments, scene = parser.parse_known_args()
     for option in OURS:
         if any(word.split("=")[0] == f"--{option}" for word in scene):

@@ -181,11 +181,17 @@ def mark_pareto(points):
 def main():
     """Run the grid, write table and picture."""
     parser = argparse.ArgumentParser(prog="chart", description=__doc__.splitlines()[0])
-    parser.add_argument("--rounds", type=count, default=3, help="rounds of the timing")
-    parser.add_argument("--steps", type=count, default=4000, help="steps of each, at refine = 1")
+    parser.add_argument("--rounds", type=count, default=3, help="rounds of the timing (default 3)")
+    parser.add_argument(
+        "--steps", type=count, default=4000, help="steps of each, at refine = 1 (default 4000)"
+    )
     parser.add_argument("--quick", action="store_true", help="a small grid")
     parser.add_argument(
-        "--out", type=folder, default=REFERENCE, help="folder for chart.csv and .png"
+        "--out",
+        type=folder,
+        default=REFERENCE,
+        metavar="DIR",
+        help="folder of chart.csv and chart.png (default: reference)",
     )
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)

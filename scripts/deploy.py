@@ -28,7 +28,7 @@ def command_line():
         "--out",
         type=folder,
         metavar="DIR",
-        help="output folder (default: out, in a batch out/CASE)",
+        help="output folder (default: out; in a batch out/CASE)",
     )
     parser.add_argument("--no-pictures", action="store_true", help="draw no pictures")
     parser.add_argument("--no-report", action="store_true", help="write no report.html")

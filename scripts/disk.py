@@ -89,9 +89,9 @@ def main():
     parser.add_argument(
         "--out",
         type=folder,
-        default=Path("."),
+        default=Path("out/disk"),
         metavar="DIR",
-        help="folder of disk.png (default .)",
+        help="folder of disk.png (default: out/disk)",
     )
     out = parser.parse_args().out
     out.mkdir(parents=True, exist_ok=True)

@@ -17,7 +17,7 @@ that spin, and must end at 2.5 rpm; with `--spin 2.5` it ends at 1.1 rpm.
 """
 
 import argparse
-from dataclasses import replace
+from dataclasses import fields, replace
 from math import pi
 from pathlib import Path
 
@@ -25,7 +25,7 @@ import numpy as np
 from membrane.commands import folder, plain_errors
 from membrane.files import write_json
 from membrane.measures import energy_errors
-from membrane.parameters import SailParameters
+from membrane.parameters import SailParameters, add_argument
 from membrane.unfinished import new_results
 
 with plain_errors("ikaros"):
@@ -73,17 +73,18 @@ def command_line():
     parser = argparse.ArgumentParser(
         prog="ikaros", description="Stage 2 of the deployment of IKAROS, on a free hub."
     )
-    parser.add_argument("--out", type=folder, default=Path("out_ikaros"), metavar="DIR")
+    parser.add_argument(
+        "--out", type=folder, default=Path("out/ikaros"), metavar="DIR", help="default: out/ikaros"
+    )
     parser.add_argument(
         "--spin",
         type=float,
         metavar="RPM",
-        help="before stage 2 (default: that which gives the angular momentum of the flight)",
+        help="spin before stage 2, > 0 (default: that with the angular momentum of the flight)",
     )
-    for name in OPTIONS:
-        value = getattr(IKAROS, name)
-        flag = "--" + name.replace("_", "-")
-        parser.add_argument(flag, type=type(value), default=value, metavar="N")
+    for item in fields(SailParameters):
+        if item.name in OPTIONS:
+            add_argument(parser, item, getattr(IKAROS, item.name))
     return parser.parse_args()
 
 
@@ -151,7 +152,7 @@ def deploy(p, spin, folder):
     """Do it all; returns what is written to summary.json. `spin` [rpm] or None: that of flight."""
     mesh, built = sail.build(p)
     critical = built.forces.criticalTimeStep()
-    p = replace(p, dt=STEP * critical, omega=(spin or FLIGHT_SPIN) * RPM)
+    p = replace(p, dt=STEP * critical, omega=(FLIGHT_SPIN if spin is None else spin) * RPM)
     sail.spin_up(built, p)
     if spin is None:
         cross = hub.inertia(built, built.positions())

@@ -38,9 +38,9 @@ def main():
     """Unfold the sheet; sys.exit with one sentence if that cannot be."""
     parser = argparse.ArgumentParser(prog="miura", description=__doc__.splitlines()[0])
     parser.add_argument(
-        "--out", type=folder, default=Path("out"), metavar="DIR", help="output folder"
+        "--out", type=folder, default=Path("out/miura"), metavar="DIR", help="default: out/miura"
     )
-    parser.add_argument("--duration", type=float, default=1.0, metavar="S", help="default 1 s")
+    parser.add_argument("--duration", type=float, default=1.0, metavar="s", help="[s] (default 1)")
     arguments = parser.parse_args()
     with plain_errors("miura"):
         chosen = parameters(arguments.duration)

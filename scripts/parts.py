@@ -115,9 +115,13 @@ def verdict(name, change, spread, cost):
 def main():
     """Measure, write the table, print the advice."""
     parser = argparse.ArgumentParser(prog="parts", description=__doc__.splitlines()[0])
-    parser.add_argument("--rounds", type=count, default=3, help="pairs of runs that time a part")
-    parser.add_argument("--steps", type=count, default=1000, help="steps of each")
-    parser.add_argument("--members", type=count, default=3, help="runs that give the spread")
+    parser.add_argument(
+        "--rounds", type=count, default=3, help="pairs of runs that time a part (default 3)"
+    )
+    parser.add_argument("--steps", type=count, default=1000, help="steps of each (default 1000)")
+    parser.add_argument(
+        "--members", type=count, default=3, help="runs that give the spread, >= 2 (default 3)"
+    )
     arguments = parser.parse_args()
     if arguments.members < 2:
         parser.error(f"--members {arguments.members}: must be at least 2")

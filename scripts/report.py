@@ -13,7 +13,7 @@ with plain_errors("report"):
 def main():
     """Do it for each folder; sys.exit with one sentence if that cannot be."""
     parser = argparse.ArgumentParser(prog="report", description=__doc__)
-    parser.add_argument("folders", nargs="+", type=Path, metavar="FOLDER", help="output of deploy")
+    parser.add_argument("folders", nargs="+", type=Path, metavar="FOLDER", help="output of a run")
     for folder in parser.parse_args().folders:
         with plain_errors("report"):
             made = [report.write_report(folder)]

@@ -208,7 +208,7 @@ run_yade() {
 
 run_tests() {
     # Those in C++, if any; then those in YADE, away from the caller's files.
-    if compgen -G "$root/tests/*.cpp" >/dev/null; then
+    if [[ " $* " != *" -h "* && " $* " != *" --help "* ]] && compgen -G "$root/tests/*.cpp" >/dev/null; then
         ctest --test-dir "$build" --label-regex kernel --output-on-failure
     fi
     mkdir -p "$build/tests"

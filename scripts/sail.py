@@ -24,7 +24,7 @@ def command_line():
     )
     parser.add_argument("file", type=Path, help="crease pattern (.fold) or mesh of gmsh (.msh)")
     parser.add_argument(
-        "--out", type=folder, default=Path("out"), metavar="DIR", help="output folder"
+        "--out", type=folder, default=Path("out"), metavar="DIR", help="default: out"
     )
     parser.add_argument("--no-pictures", action="store_true", help="draw no pictures")
     parser.add_argument("--no-report", action="store_true", help="write no report.html")

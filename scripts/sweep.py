@@ -34,7 +34,7 @@ def command_line():
     commands = parser.add_subparsers(dest="command", required=True)
     run = commands.add_parser("run", help="run what is missing, and report")
     run.add_argument(
-        "--out", type=Path, default=Path("out/sweep"), metavar="DIR", help="default out/sweep"
+        "--out", type=Path, default=Path("out/sweep"), metavar="DIR", help="default: out/sweep"
     )
     run.add_argument(
         "-j",

@@ -33,7 +33,10 @@ def command_line():
         help=f"run only these of {', '.join(MODULES)}; the others keep their results in the file",
     )
     parser.add_argument(
-        "--fast", action="store_true", help="only what takes seconds; then no file is written"
+        "--quick",
+        "--fast",
+        action="store_true",
+        help="only what takes seconds; then no file is written",
     )
     return parser.parse_args()
 
@@ -81,18 +84,18 @@ def main():
     for number, name in enumerate(modules, start=1):
         print(f"verify: {number} of {len(modules)}, {name} …", file=sys.stderr, flush=True)
         try:
-            found = run(name, not arguments.fast)
+            found = run(name, not arguments.quick)
         except RuntimeError as error:
             print(f"verify: {name}: {error}", file=sys.stderr)
             return 1
-        if not arguments.fast:
+        if not arguments.quick:
             save(name, found)
         count += len(found)
         failed += [f"{name}: {check.name}" for check in found if not check.holds]
     for text in failed:
         print(f"verify: does not hold: {text}", file=sys.stderr)
     print(f"{count - len(failed)} of {count} checks hold.")
-    if not arguments.fast:
+    if not arguments.quick:
         print(f"Results are in {RESULTS}")
     return 1 if failed else 0
 

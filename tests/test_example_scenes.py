@@ -29,16 +29,21 @@ class TestIkaros(CommandTest):
         self.assertLess(found["largest_unexplained_energy"], 1e-4 * energy)
         self.assertGreater((folder / "ikaros.png").stat().st_size, 50_000)
 
-    def test_bad_value_ends_with_one_sentence(self):
-        done = run_yade(self.SCRIPT, "--out", scratch() / "refused", "--zeta=-1")
-        self.ends_with_one_sentence(done, "ikaros", "ikaros: zeta = -1.0 must be >= 0")
+    def test_bad_values_end_with_one_sentence(self):
+        for option, said in (
+            ("--zeta=-1", "zeta = -1.0 must be >= 0"),
+            ("--spin=0", "omega = 0.0 rad/s must be > 0"),
+        ):
+            done = run_yade(self.SCRIPT, "--out", scratch() / "refused", option, "--duration", "0")
+            self.ends_with_one_sentence(done, "ikaros", f"ikaros: {said}")
 
 
 class TestGuide(unittest.TestCase):
     def test_its_own_mesh_opens_and_keeps_its_energy(self):
         text = (ROOT / "reference" / "guide.md").read_text()
         script = scratch() / "sheet.py"
-        script.write_text(text.split("```python\n")[1].split("```")[0])
+        section = text.split("\n## 5. Your own mesh\n")[1]
+        script.write_text(section.split("```python\n")[1].split("```")[0])
         done = run_yade(script, folder=scratch())
         self.assertEqual(done.returncode, 0, done.stderr)
         said = re.search(r"opened to (\d+) degrees; energy from nowhere (\S+) J", done.stdout)

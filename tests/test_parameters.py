@@ -3,6 +3,7 @@
 
 import argparse
 import json
+import re
 import subprocess
 import sys
 import unittest
@@ -13,7 +14,7 @@ from unittest import mock
 from membrane.parameters import SailParameters, add_arguments, describe, from_arguments, parse
 from support import ROOT, long, scratch, yade_environment
 
-# Tables 1 and 2 of the paper, and the defaults that MODEL chose among Table 2's.
+# Tables 1 and 2 of the paper, and the defaults chosen among Table 2's.
 PAPER = {
     "outer_width": 0.455,
     "inner_width": 0.103,
@@ -87,13 +88,28 @@ class TestParameters(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "betta is no parameter of the sail; known are"):
             from_arguments(self.parse(), {"betta": 3.0})
 
-    def test_every_description_has_source_range_and_default(self):
+    def test_every_description_has_unit_range_and_default(self):
         for item in fields(SailParameters):
             text = describe(item)
-            self.assertIn(item.metadata["source"], text)
-            self.assertIn(f"default {item.default}", text)
+            number = re.search(r"default (.+)\)$", text)[1]
+            if item.type in (float, int):
+                self.assertAlmostEqual(float(number), item.default, delta=1e-5 * item.default)
+                self.assertIn(">", text)
+            else:
+                self.assertEqual(number, str(item.default))
             if item.type is float and item.metadata["unit"] != "-":
                 self.assertIn(f"[{item.metadata['unit']}]", text)
+
+    def test_help_tells_sources_and_the_defaults_of_this_command(self):
+        parser = argparse.ArgumentParser()
+        add_arguments(parser, several={"beta": (3.0, 30.0)}, defaults={"duration": 1.2})
+        text = " ".join(parser.format_help().split())
+        for source in ("Table 1", "Table 2", "assumed", "run"):
+            self.assertIn(f"parameters, {source}:", text)
+        self.assertIn("time to run after the release [s] (>= 0; default 1.2)", text)
+        self.assertIn("crease stiffness; 0: no creases (>= 0; one or more; default 3 30)", text)
+        found = parser.parse_args([])
+        self.assertEqual((found.beta, found.duration, found.zeta), ([3.0, 30.0], 1.2, 0.02))
 
 
 class TestBatch(unittest.TestCase):

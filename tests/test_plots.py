@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pictures: scale bars as long as they say, and words that can be read."""
+"""Pictures: scale bars as long as they say, words that can be read, curves clear of the frame."""
 
 import csv
 import itertools
 import sys
 import unittest
 from types import SimpleNamespace
+from unittest import mock
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -96,6 +97,18 @@ class TestChart(unittest.TestCase):
         boxes = [axes.get_tightbbox() for axes in self.figure.axes]
         for left, right in itertools.pairwise(boxes):
             self.assertLess(left.x1, right.x0)
+
+
+class TestHistory(unittest.TestCase):
+    def test_a_curve_that_stays_where_it_is_stands_clear_of_the_frame(self):
+        history = {"time": [0.0, 0.1, 0.2], "area": [0.999, 1.0, 0.999], "none": [0.0, 0.0, 0.0]}
+        with mock.patch.object(Figure, "savefig", autospec=True) as save:
+            plots.plot_history(history, {"area": "area [-]", "none": "none [-]"}, "no.png")
+        figure = save.call_args[0][0]
+        for axes, top in zip(figure.axes, (1.0, 0.0)):
+            low, high = axes.get_ylim()
+            self.assertEqual(low, 0)
+            self.assertGreater(high - top, 0.03 * (high - low))
 
 
 if __name__ == "__main__":

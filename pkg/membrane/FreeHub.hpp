@@ -30,7 +30,7 @@ public:
         ((shared_ptr<MembraneForceEngine>, forces, , , "The engine of the membrane's forces."))
         ((vector<int>, nodes, , , "Nodes of the membrane that turn with the hub: ids in the mesh."))
         ((shared_ptr<SpoolRotation>, spool, , , "Turns the hub's facets; its angle and angularVelocity are set here. Optional."))
-        ((Real, inertia, 0., Attr::triggerPostLoad, "Moment of inertia J of the hub about z [kg m²], without that of its nodes, >= 0."))
+        ((Real, inertia, 0., Attr::triggerPostLoad, "Moment of inertia of the hub about z [kg m²], without that of its nodes, >= 0."))
         ((Real, spin, 0., , "About +z [rad/s]; half a step before the positions, as YADE's velocities."))
         ((Real, angle, 0., Attr::readonly, "By which the hub has turned [rad]."))
         ((Real, spinBefore, 0., Attr::readonly, "spin before the last step [rad/s]; the mean of both belongs to the places that the last step's forces saw."))

@@ -78,7 +78,19 @@ def still_there(file, path):
 
 
 def finish(p, folder, checkpoints, pictures):
-    """Run the case from the beginning or its last checkpoint; the lock must be held."""
+    """Run the case from the beginning or its last checkpoint; the lock must be held.
+
+    Parameters
+    ----------
+    p, folder, pictures
+        As of `run`.
+    checkpoints : Checkpoints
+
+    Returns
+    -------
+    dict
+        What is in case.json.
+    """
     part = part_of(folder)
     about = {"parameters": p.as_dict(), "versions": sail.versions()}
     begin(part, about)

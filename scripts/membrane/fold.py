@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The folded sail: a cross of four standing strips (MODEL, "Folding, spin-up, release").
+"""The folded sail: a cross of four standing strips (paper, 3.3).
 
 Every petal is folded zig-zag into a strip that stands along z: even fold lines (and the inner
 edge) at its foot, odd ones at its head. The strip is bent over its guide bar, and its two halves

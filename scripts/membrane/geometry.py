@@ -61,18 +61,24 @@ def side_lengths(nodes, sides):
 
 
 def area_vectors(nodes, triangles):
-    """Area [m2] times upper unit normal, (T, 3); zero where a triangle has no area."""
+    """Area [m2] times upper unit normal of `triangles` (T, 3) of `nodes` (N, 3) [m]: (T, 3).
+
+    Seen from above the corners run counter-clockwise. Zero where a triangle has no area.
+    """
     a, b, c = (nodes[triangles[:, i]] for i in range(3))
     return 0.5 * np.cross(b - a, c - a)
 
 
 def triangle_areas(nodes, triangles):
-    """Areas (T,) [m2], never negative."""
+    """Areas (T,) [m2] of `triangles` (T, 3) of `nodes` (N, 3) [m], never negative."""
     return np.linalg.norm(area_vectors(nodes, triangles), axis=1)
 
 
 def triangle_angles(nodes, triangles):
-    """Inner angles (T, 3) [rad] at the three corners; 0 at corners of a triangle without area."""
+    """Inner angles (T, 3) [rad] at the corners of `triangles` (T, 3) of `nodes` (N, 3) [m].
+
+    0 or pi at corners of a triangle without area.
+    """
     corners = nodes[triangles]
     ahead = np.roll(corners, -1, axis=1) - corners
     behind = np.roll(corners, 1, axis=1) - corners
@@ -142,6 +148,11 @@ def crease_angles(nodes, triangles, creases, signs):
     (K,) float
         Angles [rad] in (-pi/2, 3 pi/2]: 0 folded face to face, pi flat, negative where the two
         faces have passed through each other.
+
+    Raises
+    ------
+    ValueError
+        If a sign is another, or a crease is no side of two triangles.
     """
     signs = np.asarray(signs)
     if not np.all(np.isin(signs, (MOUNTAIN, VALLEY))):

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What is measured on the sail (MODEL, "What is measured"): plain functions of positions.
+"""What is measured on the sail (README, "Assumptions"): plain functions of a mesh and positions.
 
-Positions are (N, 3) arrays [m] in the order of the mesh's nodes, in the frame of the spin axis.
+The mesh is a SailMesh, positions are (N, 3) arrays [m] in the order of its nodes, in the frame of
+the spin axis.
 """
 
 import numpy as np

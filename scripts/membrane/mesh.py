@@ -153,6 +153,12 @@ def sail_mesh(
     Returns
     -------
     SailMesh
+
+    Raises
+    ------
+    ValueError
+        Naming the parameter and its range, if one is out of range, or if the hole is less than
+        2.5 strips wide.
     """
     _check(outer_width, inner_width, fold_lines, refine, spool_radius, tether_segments)
     strip = (outer_width - inner_width) / 2 / (fold_lines + 1)
@@ -216,6 +222,11 @@ def sheet_mesh(rows, columns, spacing):
         Positions [m] row by row, from the origin along +x and then +y, in the plane z = 0.
     triangles : (2 (rows - 1) (columns - 1), 3) int
         Corners, counter-clockwise seen from +z, square by square in the order of the nodes.
+
+    Raises
+    ------
+    ValueError
+        Naming the parameter and its range, if one is out of range.
     """
     for name, value in {"rows": rows, "columns": columns}.items():
         if not isinstance(value, Integral) or value < 2:

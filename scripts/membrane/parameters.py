@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Parameters of the paper's scene: Tables 1 and 2, and what MODEL.md assumes where they are silent.
+"""Parameters of the paper's scene: Tables 1 and 2, and what is assumed where they are silent.
 
-One dataclass holds names, defaults, units and ranges; command line, yade-batch table, summary.json
-and the README's table all come from it.
+One dataclass holds names, defaults, units and ranges; command line, yade-batch table and
+summary.json all come from it.
 """
 
 import argparse
@@ -41,7 +41,16 @@ parameter = _parameter  # for other scenes
 
 @dataclass(frozen=True)
 class SailParameters:
-    """Parameters of the deployment; `describe(name)` gives meaning, unit, range and source."""
+    """Parameters of the deployment.
+
+    `dataclasses.fields(SailParameters)` lists them; `metadata` of each has the meaning ("text"),
+    "unit", "source" and range ("least", "most", "choices"), `describe` puts these into words.
+
+    Raises
+    ------
+    ValueError
+        Naming parameter, value and range, if one is out of range.
+    """
 
     fold_lines: int = _parameter(7, "-", TABLE_1, "fold lines on each petal", least=1, most=1000)
     outer_width: float = _parameter(0.455, "m", TABLE_1, "outer width", above=True)
@@ -49,7 +58,9 @@ class SailParameters:
     thickness: float = _parameter(7.5e-6, "m", TABLE_1, "thickness h of the film", above=True)
     spool_radius: float = _parameter(0.025, "m", TABLE_1, "radius of the spool", above=True)
     young: float = _parameter(3.2e9, "Pa", TABLE_1, "Young's modulus E", above=True)
-    poisson: float = _parameter(0.34, "-", TABLE_1, "Poisson's ratio nu", least=-1, most=0.5)
+    poisson: float = _parameter(
+        0.34, "-", TABLE_1, "Poisson's ratio nu", least=-1, most=0.5, above=True
+    )
     density: float = _parameter(1420.0, "kg/m3", TABLE_1, "density rho of the film", above=True)
     tip_mass: float = _parameter(0.36e-3, "kg", TABLE_1, "mass at each of the four corners")
     omega: float = _parameter(6 * pi, "rad/s", TABLE_1, "spin rate of the spool", above=True)
@@ -170,25 +181,45 @@ def _range(about):
     return words + (f" and <= {about['most']:g}" if about["most"] < inf else "")
 
 
-def describe(item):
-    """Meaning, unit, source and range of a field of SailParameters, for help texts."""
+def describe(item, default=None):
+    """Meaning, unit, range and default of a parameter in words, for help texts.
+
+    Parameters
+    ----------
+    item : dataclasses.Field
+        Of SailParameters or another class of parameters.
+    default : optional
+        In place of the field's own: a value, or a list of them where several may be given.
+    """
     about = item.metadata
+    default = item.default if default is None else default
     unit = "" if about["unit"] == "-" else f" [{about['unit']}]"
-    allowed = ", ".join(about["choices"]) if about["choices"] else _range(about)
-    extent = "" if item.type is bool else f", {allowed}"
-    return f"{about['text']}{unit} ({about['source']}{extent}; default {item.default})"
+    extent = "" if item.type is bool or about["choices"] else f"{_range(about)}; "
+    more = "one or more; " if isinstance(default, list) else ""
+    values = default if isinstance(default, list) else [default]
+    words = " ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in values)
+    return f"{about['text']}{unit} ({extent}{more}default {words})"
 
 
-def add_arguments(parser, kind=SailParameters, several=None):
+def add_arguments(parser, kind=SailParameters, several=None, defaults=None):
     """Add one option for every parameter to an argparse parser, grouped by source.
 
-    `several` (a dict) gives the defaults of those parameters that take one value or more.
+    Parameters
+    ----------
+    parser : ArgumentParser
+    kind : class
+        Of the parameters.
+    several : dict, optional
+        Defaults, a sequence each, of those parameters that take one value or more.
+    defaults : dict, optional
+        Of the others, in place of those of `kind`.
     """
+    chosen = {**(defaults or {}), **{name: list(v) for name, v in (several or {}).items()}}
     for source in dict.fromkeys(item.metadata["source"] for item in fields(kind)):
-        group = parser.add_argument_group(f"parameters: {source}")
+        group = parser.add_argument_group(f"parameters, {source}")
         for item in fields(kind):
             if item.metadata["source"] == source:
-                _add_argument(group, item, (several or {}).get(item.name))
+                add_argument(group, item, chosen.get(item.name, item.default))
 
 
 def parse(parser, kind=SailParameters, *, several=None, defaults=None, root=None):
@@ -213,10 +244,9 @@ def parse(parser, kind=SailParameters, *, several=None, defaults=None, root=None
     ------
     BadFile or OSError
     """
-    add_arguments(parser, kind, several)
+    add_arguments(parser, kind, several, defaults)
     text = "take parameters that are not given from this JSON file, as summary.json of a run"
     parser.add_argument("--parameters", metavar="FILE", help=text)
-    parser.set_defaults(**(defaults or {}))
     root = root or parser
     arguments = root.parse_args()
     file = getattr(arguments, "parameters", None)
@@ -227,21 +257,26 @@ def parse(parser, kind=SailParameters, *, several=None, defaults=None, root=None
     return arguments
 
 
-def _add_argument(group, item, several):
-    flag, text = "--" + item.name.replace("_", "-"), describe(item).replace("%", "%%")
+def add_argument(group, item, default):
+    """Add the option for one parameter to an argparse parser or group.
+
+    Parameters
+    ----------
+    group : ArgumentParser or its group
+    item, default
+        As of `describe`.
+    """
+    flag = "--" + item.name.replace("_", "-")
+    text = describe(item, default).replace("%", "%%")
     if item.type is bool:
-        group.add_argument(
-            flag, action=argparse.BooleanOptionalAction, default=item.default, help=text
-        )
+        group.add_argument(flag, action=argparse.BooleanOptionalAction, default=default, help=text)
         return
     choices = item.metadata["choices"]
     metavar = None if choices else item.metadata["unit"].replace("-", "N")
-    more = {"default": item.default}
-    if several:
-        shown = " ".join(f"{value:g}" for value in several)
-        text = text.replace(f"default {item.default}", f"one or more; default {shown}")
-        more = {"default": list(several), "nargs": "+"}
-    group.add_argument(flag, type=item.type, choices=choices, metavar=metavar, help=text, **more)
+    more = {"nargs": "+"} if isinstance(default, list) else {}
+    group.add_argument(
+        flag, type=item.type, default=default, choices=choices, metavar=metavar, help=text, **more
+    )
 
 
 def from_arguments(arguments, overrides=None, kind=SailParameters):

@@ -134,6 +134,12 @@ class PatternSail:
 def read_sheet(path, p):
     """The SheetMesh of a .fold or .msh file.
 
+    Parameters
+    ----------
+    path : path
+    p : PatternParameters
+        Of which unit, size and start_frame count.
+
     Raises
     ------
     ValueError
@@ -158,11 +164,16 @@ def read_sheet(path, p):
 
 
 def place(sheet, p):
-    """Put a sheet on the spin axis, choose its tips and its hub.
+    """Put a SheetMesh on the spin axis, choose its tips and its hub by PatternParameters `p`.
 
     Returns
     -------
     PatternSail
+
+    Raises
+    ------
+    ValueError
+        If no node lies within the hub's radius.
     """
     tips = _tips(sheet, p.tips)
     mass = _node_masses(sheet, p, tips)

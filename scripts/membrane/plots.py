@@ -62,7 +62,7 @@ def plot_history(history, columns, path):
         axes.plot(history["time"], history[name], color="C0")
         axes.set(ylabel=label)
         if np.min(history[name]) >= 0:
-            axes.set(ylim=(0, None))
+            axes.set(ylim=(0, 1.05 * np.max(history[name]) or None))
         axes.grid(alpha=0.3)
         axes.margins(x=0)
     every[-1].set(xlabel="time [s]")
@@ -130,9 +130,10 @@ def _plot_views(frames, times, path, draw):
 
 
 def draw_sail(axes, mesh, positions, radius):
-    """Draw the film, shaded, with tips, tethers and spool on 3-D axes reaching to `radius` [m].
+    """Draw a SailMesh, shaded, with tips, tethers and spool; nodes at `positions` (N, 3) [m].
 
-    The spool is as tall as the strips: the mesh does not tell its height.
+    The 3-D `axes` reach to `radius` [m] from the axis of spin. The spool is as tall as the strips:
+    the mesh does not tell its height.
     """
     spool = _spool_faces(mesh.spool_radius, mesh.strip_width)
     _draw_faces(axes, positions[mesh.triangles], spool)
@@ -143,7 +144,7 @@ def draw_sail(axes, mesh, positions, radius):
 
 
 def draw_scale_bar(axes, radius):
-    """Draw a bar of 1, 2 or 5 times a power of ten below a sail that reaches to `radius` [m].
+    """Draw a bar below a sail that reaches to `radius` [m]: 1, 2 or 5 times a power of ten long.
 
     It stands in the plane through the origin across the view, and holds for lengths there.
     """

@@ -117,7 +117,7 @@ def add_membrane(mesh, positions, p, **options):
 
 
 def set_engines(membrane, p, **options):
-    """`scene.set_engines` with what the parameters `p` say; `options` are further ones of it."""
+    """`scene.set_engines` for a Membrane by the parameters `p`; `options` are further ones."""
     return scene.set_engines(
         membrane,
         path=p.path,
@@ -179,7 +179,7 @@ def spin_up(sail, p, begun=None, keep=None, look=look_away):
 
 
 def release(mesh, sail, p):
-    """Release the sail, with the time step of the run."""
+    """Release a MembraneScene of a SailMesh, with spin and time step of the parameters `p`."""
     yade_classes.Omega().dt = p.dt
     scene.release(sail, p.omega, mesh.guide_nodes.ravel())
 
@@ -368,7 +368,7 @@ def begin(p):
 
 
 def counts(mesh, membrane):
-    """How many nodes, triangles, sides and creases there are, for summary.json."""
+    """How many nodes, triangles, sides and creases a mesh and its Membrane have: dict of int."""
     return {
         "nodes": len(mesh.nodes),
         "triangles": len(mesh.triangles),
@@ -378,7 +378,7 @@ def counts(mesh, membrane):
 
 
 def write_page(folder):
-    """Write report.html, or remove an earlier run's and tell why there is none."""
+    """Write report.html into a run's `folder`, or remove an earlier one and tell why."""
     (folder / report.PAGE).unlink(missing_ok=True)
     try:
         report.write_report(folder)
@@ -387,7 +387,7 @@ def write_page(folder):
 
 
 def save_last_good(sail, folder):
-    """Put the sail back to the last good state and save it; returns a sentence about it."""
+    """Put a MembraneScene back to its last good state, saved in `folder`; returns a sentence."""
     try:
         time = sail.watch.restore()
     except RuntimeError as error:
@@ -402,7 +402,17 @@ def save_last_good(sail, folder):
 
 
 def draw(mesh, recorder, history, folder):
-    """Write deployment.png, and shapes.png with six instants up to the fullest deployment."""
+    """Write deployment.png, and shapes.png with six instants up to the fullest deployment.
+
+    Parameters
+    ----------
+    mesh : SailMesh
+    recorder : Recorder
+        Has the shapes.
+    history : mapping of (S,) float
+        As `plots.plot_deployment` takes it.
+    folder : Path
+    """
     plots.plot_deployment(history, folder / "deployment.png")
     times = np.array(recorder.frame_times)
     rates = [measures.deployment_rate(mesh, x) for x in recorder.frames]

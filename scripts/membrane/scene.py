@@ -87,14 +87,35 @@ class MembraneScene:
         return np.array(self.membrane.masses)
 
     def hold(self, nodes, held=True):
-        """Hold `nodes` (ids in the mesh) where they are, or let them go."""
+        """Hold `nodes` (ids in the mesh) where they are; `held` False: let them go."""
         bodies, ids = yade.Omega().bodies, self.membrane.bodyIds
         for node in nodes:
             bodies[ids[node]].state.blockedDOFs = "xyzXYZ" if held else "XYZ"
 
 
 def film(young=3.2e9, poisson=0.34, density=1420.0, thickness=7.5e-6):
-    """Material of the film; the defaults are Table 1's. E [Pa], nu [-], rho [kg/m3], h [m]."""
+    """Material of the film; the defaults are those of the paper's Table 1.
+
+    Parameters
+    ----------
+    young : float
+        Young's modulus E [Pa], > 0.
+    poisson : float
+        Poisson's ratio nu [-], in (-1, 0.5].
+    density : float
+        rho [kg/m3], > 0.
+    thickness : float
+        h [m], > 0.
+
+    Returns
+    -------
+    MembraneMat
+
+    Raises
+    ------
+    ValueError
+        If one is out of range.
+    """
     return _plugin["MembraneMat"](
         young=young, poisson=poisson, density=density, thickness=thickness
     )
@@ -121,9 +142,9 @@ def add_membrane(
     triangles : (T, 3) int
         Node ids, counter-clockwise seen from the top.
     creases : (C, 2) int
-        Node ids of the sides on fold lines.
+        Node ids of the sides on fold lines, each between two triangles.
     crease_signs : (C,) int
-        +1 mountain, -1 valley.
+        +1 mountain, -1 valley, seen from the top.
     cables : (K, 2) int
         Node ids of tether segments.
     positions : (N, 3) float, optional
@@ -131,7 +152,7 @@ def add_membrane(
     material : MembraneMat, optional
         Default: `film()`.
     radius : float
-        Of the spheres [m]; it counts only for contacts and for drawing.
+        Of the spheres [m], > 0; it counts only for contacts and for drawing.
     interactions : bool
         False: none, as the path "fused" needs none; path "law2" adds them later.
     **options
@@ -140,6 +161,11 @@ def add_membrane(
     Returns
     -------
     Membrane
+
+    Raises
+    ------
+    ValueError
+        Naming the attribute and what must hold, if mesh, material or options cannot be used.
     """
     nodes = np.asarray(nodes, dtype=float)
     places = nodes if positions is None else np.asarray(positions, dtype=float)
@@ -191,7 +217,7 @@ def set_engines(
         same physics by MembraneIntegrator, several times faster; removes the membrane's
         interactions.
     exchange_period : int
-        Of path "fused": steps between two updates of the bodies that touch nothing; see
+        Of path "fused": steps between two updates of the bodies that touch nothing, >= 1; see
         MembraneIntegrator.exchangePeriod. The ledger's energies are brought up to date as seldom,
         but at least every LEDGER_PERIOD steps, for the watch.
     driven : sequence of int
@@ -205,16 +231,28 @@ def set_engines(
         freely: a FreeHub; `omega` is its spin when it begins. Default: they are driven at `omega`.
     gravity : 3 floats
         [m/s2].
-    beta, gamma, theta0, crease_law, zeta, air_density
-        Attributes of MembraneForceEngine.
+    beta, gamma, zeta : float
+        Stiffness of the creases, their penalty where faces have passed through each other, and
+        damping ratio [-], >= 0; 0: none.
+    theta0 : float
+        Natural angle of the creases [rad], in [0, pi].
+    crease_law : "paper" or "conservative"
+        Equation (7) as printed, or the gradient of an energy.
+    air_density : float
+        [kg/m3], >= 0; 0: no drag.
     force_time_step : bool
         Run even above the critical time step.
     energy_tolerance : float or None
-        Energy from nowhere, over all energy, that stops a run [-]; None: no MembraneWatch.
+        Energy from nowhere, over all energy, that stops a run [-], > 0; None: no MembraneWatch.
 
     Returns
     -------
     MembraneScene
+
+    Raises
+    ------
+    ValueError
+        Naming the argument, if one is out of range.
     """
     if path not in PATHS:
         raise ValueError(f"set_engines: path = {path!r} must be one of {', '.join(PATHS)}")
@@ -398,7 +436,7 @@ def _first_step(forces):
 
 
 def compute_forces(sail):
-    """Forces (N, 3) [N] on the nodes in the present state, gravity apart: nothing moves.
+    """Forces (N, 3) [N] on a MembraneScene's nodes now, gravity apart: nothing moves.
 
     It takes a step of YADE in which neither integrator, rotation nor ledger takes part, nor any
     other membrane.
@@ -432,10 +470,10 @@ def compute_forces(sail):
 
 
 def set_spin(sail, omega, before=0.5):
-    """Let all nodes turn about z at `omega` [rad/s]: v = omega x r.
+    """Let all nodes of a MembraneScene turn about z at `omega` [rad/s]: v = omega x r.
 
-    The velocities are those of `before` steps ago: the leapfrog's lie half a step before the
-    positions.
+    The velocities are those of `before` steps ago [-]: the leapfrog's lie half a step before the
+    positions. O.dt must be set.
     """
     scene = yade.Omega()
     angle = -before * omega * scene.dt
@@ -447,7 +485,10 @@ def set_spin(sail, omega, before=0.5):
 
 
 def residual_energy(sail, omega):
-    """Kinetic energy in the turning frame over that of the spin, 1/2 sum m omega2 r2 [-]."""
+    """Kinetic energy of a MembraneScene in a frame turning at `omega` [rad/s], over the spin's [-].
+
+    That of the spin is 1/2 sum m omega2 r2.
+    """
     bodies = yade.Omega().bodies
     states = [bodies[i].state for i in sail.membrane.bodyIds]
     mass = sail.masses()
@@ -468,7 +509,7 @@ def spin_up(
     begun=None,
     keep=None,
 ):
-    """Bring the sail to rest in a frame that turns at `omega` (MODEL, folding step 3).
+    """Bring the sail to rest in a frame that turns at `omega` (paper, 3.3).
 
     Parameters
     ----------
@@ -477,13 +518,13 @@ def spin_up(
     omega : float
         Spin rate [rad/s].
     tolerance : float
-        Ends when `residual_energy` has stayed below it for two batches.
+        Ends when `residual_energy` [-] has stayed below it for two batches, > 0.
     damping : float
         NewtonIntegrator's local damping meanwhile, in (0, 1).
     batch : int
-        Steps between two looks.
+        Steps between two looks, >= 1.
     max_time : float
-        Simulated time [s] after which to give up with RuntimeError.
+        Simulated time [s] after which to give up.
     on_batch : callable, optional
         Called with (simulated time, residual) after each batch.
     begun : dict, optional
@@ -495,6 +536,11 @@ def spin_up(
     -------
     dict
         simulated time [s], steps, residual [-].
+
+    Raises
+    ------
+    RuntimeError
+        If there is no equilibrium in `max_time`, or the residual energy exceeds 10.
     """
     scene = yade.Omega()
     engines = {sail.field: False, sail.rotation: True, sail.spool: True, sail.ledger: True}
@@ -532,10 +578,18 @@ def spin_up(
 
 
 def release(sail, omega, held):
-    """Go over to the inertial frame and let the `held` nodes go (MODEL, folding step 4).
+    """Go over to the inertial frame and let the `held` nodes go (paper, 3.3).
 
     At the release v = omega x r everywhere. The leapfrog's velocities lie half a step before, and
     follow from the accelerations of the nodes once they are free: v - a dt / 2.
+
+    Parameters
+    ----------
+    sail : MembraneScene
+    omega : float
+        Spin rate [rad/s].
+    held : sequence of int
+        Ids of nodes in the mesh, as the guide nodes.
     """
     sail.field.dead = True
     sail.newton.damping = 0

@@ -68,6 +68,11 @@ def add_spool(radius=0.025, height=0.06, facets=36, young=1e6, friction_angle=0.
     -------
     list of int
         Ids of the facets.
+
+    Raises
+    ------
+    ValueError
+        Naming the parameter and its range, if one is out of range.
     """
     for name, value in {"radius": radius, "height": height, "young": young}.items():
         if not value > 0:

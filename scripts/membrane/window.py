@@ -114,7 +114,15 @@ class Window:
         self._refresh_until(lambda: self.drawer.frames >= wanted or self.drawer.dead, "no picture")
 
     def snapshot(self, path):
-        """Write a picture of the present state, .png or as `path` ends; returns the Path."""
+        """Write a picture of the present state, .png or as `path` ends; returns the Path.
+
+        Raises
+        ------
+        OSError
+            If it cannot be written.
+        RuntimeError
+            If the window does not draw.
+        """
         from PyQt5.QtWidgets import QApplication, QOpenGLWidget
 
         # YADE's own saveSnapshot writes JPEG whatever the name, and does not say when.

@@ -36,10 +36,10 @@ STRAIN_STEP, CREASE_STEP, FIELD_STEP = 1e-6, 5e-6, 1e-3  # of those differences 
 LOWEST = 2e-3  # height [m] of a crease's triangles under which that step is too long
 STRETCH = 3e-3  # of tethers of the flat sail
 ASKED = 500  # nodes of each state at which energies are differenced
-# Two bounds of the README's assumptions that MODEL.md lacks act at some nodes only. These are told
-# apart from all others, each compared over its own largest force, and there the bounds' effect is
-# recorded: on levers of creases whose height or length is collapsed, and on the damping of tethers
-# that shorten so fast that it exceeds their tension.
+# Two bounds of the README's assumptions act at some nodes only. These are told apart from all
+# others, each compared over its own largest force, and there the bounds' effect is recorded: on
+# levers of creases whose height or length is collapsed, and on the damping of tethers that shorten
+# so fast that it exceeds their tension.
 CREASES, DAMPING = "creases (7), (8), {}, theta0 {:g}", "damping (9), zeta {:g}"
 TOGETHER = "all together, zeta {:g}"
 HEIGHTS = ("height_c", "height_d")
@@ -401,8 +401,8 @@ def state_differences(sail, state):
 def bound_effects(sail, state):
     """What the bounds change in a State where they act: {title: [-]}.
 
-    The largest difference of the plugin's forces and those of MODEL.md, without bounds, over the
-    largest of the latter at these nodes.
+    The largest difference of the plugin's forces and those of the equations, without bounds, over
+    the largest of the latter at these nodes.
     """
     pairs = crease_pairs(sail, state, collapsed=0.0)
     pairs.update(damping_pairs(sail, state, may_push=True))
@@ -590,6 +590,6 @@ def checks(full):
         )
         found.append(at_most(f"{title}: force + gradient of energy", error, DIFFERENCE, source))
     even = max(error for name, error in laws.items() if not name.startswith("uneven"))
-    source = "MODEL.md: the laws agree where heights are equal and theta0 = 0"
+    source = "model.md: the laws agree where heights are equal and theta0 = 0"
     found.append(at_most("creases, flat: paper - conservative", even, AGREEMENT, source))
     return found
