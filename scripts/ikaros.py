@@ -150,7 +150,7 @@ def deploy(p, spin, folder):
     """Do it all; returns what is written to summary.json. `spin` [rpm] or None: that of flight."""
     mesh, built = sail.build(p)
     critical = built.forces.criticalTimeStep()
-    p = replace(p, dt=STEP * critical, omega=(spin or FLIGHT_SPIN) * RPM)
+    p = replace(p, dt=STEP * critical, omega=(FLIGHT_SPIN if spin is None else spin) * RPM)
     sail.spin_up(built, p)
     if spin is None:
         cross = hub.inertia(built, built.positions())
@@ -174,7 +174,7 @@ def main():
     """Deploy it and tell about the spin; sys.exit with one sentence if that cannot be."""
     arguments = command_line()
     given = {name: getattr(arguments, name) for name in OPTIONS}
-    with plain_errors("ikaros"), new_results(arguments.out) as part:
+    with new_results(arguments.out) as part:
         found = deploy(replace(IKAROS, **given), arguments.spin, part)
     spin = found["spin_rpm"]
     print(
@@ -189,4 +189,5 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    with plain_errors("ikaros"):
+        main()
