@@ -2,9 +2,8 @@
 """Renders sail.mp4 and sail.gif from the shapes of runs: `scripts/run.sh animate FOLDER ...`."""
 
 import argparse
-from pathlib import Path
 
-from membrane.commands import plain_errors
+from membrane.commands import folder, plain_errors
 
 with plain_errors("animate"):
     from membrane import animation
@@ -13,12 +12,13 @@ with plain_errors("animate"):
 def main():
     """Do it for each folder; sys.exit with one sentence if that cannot be."""
     parser = argparse.ArgumentParser(prog="animate", description=__doc__)
-    parser.add_argument("folders", nargs="+", type=Path, metavar="FOLDER", help="output of a run")
-    for folder in parser.parse_args().folders:
-        with plain_errors("animate"):
-            made = animation.animate(folder)
-        for path in made:
+    parser.add_argument(
+        "folders", nargs="+", type=folder, metavar="FOLDER", help="output of a run"
+    )
+    for place in parser.parse_args().folders:
+        for path in animation.animate(place):
             print(path)
 
 
-main()
+with plain_errors("animate"):
+    main()

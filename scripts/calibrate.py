@@ -14,7 +14,7 @@ import time
 from pathlib import Path
 
 import sweeping  # noqa: F401  (makes parts of membrane importable without YADE)
-from membrane.commands import plain_errors
+from membrane.commands import folder, plain_errors
 from membrane.files import write_json
 from membrane.unfinished import new_results
 
@@ -67,7 +67,7 @@ def command_line():
     )
     parser.add_argument(
         "--out",
-        type=Path,
+        type=folder,
         default=Path("out/calibration"),
         metavar="DIR",
         help="default: out/calibration",
@@ -81,8 +81,10 @@ def command_line():
             parser.error(f"--{option} is chosen here, not by the caller")
     for name in NAMES:
         low, high = getattr(arguments, name)
-        if not 0 < low <= high:
+        if not 0 < low <= high < np.inf:
             parser.error(f"--{name.replace('_', '-')} {low:g} {high:g}: must be > 0 and grow")
+    if arguments.seed < 0:
+        parser.error(f"--seed {arguments.seed}: must be >= 0")
     return arguments, scene
 
 
@@ -175,9 +177,9 @@ def main():
         took = time.monotonic() - start
         print(f"run {count:3d}  {took:5.0f} s  {where}: {off}", file=sys.stderr, flush=True)
 
-    with plain_errors("calibrate"):
-        target = read_target(arguments.target, arguments.column or (), arguments.until)
-        simulate = Deployments(names, target, [*scene, *held], tell)
+    target = read_target(arguments.target, arguments.column or (), arguments.until)
+    simulate = Deployments(names, target, [*scene, *held], tell)
+    with new_results(arguments.out) as part:  # a folder that cannot be is refused before the runs
         print("coarse search: 16 runs, and at most 8 more", file=sys.stderr)
         point = search(simulate, target, low, high, arguments.seed)
         print("surfaces: 18 runs each, one to three of them", file=sys.stderr)
@@ -188,11 +190,10 @@ def main():
             raise RuntimeError("the run of the parameters found diverges")
         said = warnings(found, names, low, high, arguments.until)
         content = result(found, names, bounds, said, target, fit, surface, len(simulate), scene)
-        with new_results(arguments.out) as part:
-            write_json(part / "calibration.json", content)
-            write_runs(part / "runs.csv", simulate, names, target)
-            picture = part / "calibration.png"
-            draw(picture, target, fit, surface, found, names, simulate.points)
+        write_json(part / "calibration.json", content)
+        write_runs(part / "runs.csv", simulate, names, target)
+        picture = part / "calibration.png"
+        draw(picture, target, fit, surface, found, names, simulate.points)
     for name, about in content["parameters"].items():
         share = 100 * about["sigma_of_logarithm"]
         if about["identifiable"]:
@@ -211,4 +212,5 @@ def main():
     print(f"Look at:\n  {arguments.out}/calibration.png\n  {arguments.out}/calibration.json")
 
 
-main()
+with plain_errors("calibrate"):
+    main()

@@ -39,22 +39,21 @@ def command_line():
 
 def main():
     """Run the case; sys.exit with one sentence if that cannot be."""
-    with plain_errors("case", "stopped by Ctrl-C; run again it goes on"):
-        arguments = command_line()
-        overrides, own, _ = batch_row(
-            out=arguments.out,
-            no_pictures=arguments.no_pictures,
-            checkpoint_every=arguments.checkpoint_every,
-        )
-        if not own["out"]:
-            raise ValueError("--out is missing, the folder of the case")
-        folder = Path(own["out"])
-        found = run_case(
-            from_arguments(arguments, overrides),
-            folder,
-            own["checkpoint_every"],
-            pictures=not own["no_pictures"],
-        )
+    arguments = command_line()
+    overrides, own, _ = batch_row(
+        out=arguments.out,
+        no_pictures=arguments.no_pictures,
+        checkpoint_every=arguments.checkpoint_every,
+    )
+    if not own["out"]:
+        raise ValueError("--out is missing, the folder of the case")
+    folder = Path(own["out"])
+    found = run_case(
+        from_arguments(arguments, overrides),
+        folder,
+        own["checkpoint_every"],
+        pictures=not own["no_pictures"],
+    )
     if found["outcome"] == COMPLETE:
         print(f"Complete: {folder}")
     elif found["time"] is None:
@@ -63,4 +62,5 @@ def main():
         print(f"Diverged {found['time']:.6g} s after the release: {found['reason']}: {folder}")
 
 
-main()
+with plain_errors("case", "stopped by Ctrl-C; run again it goes on"):
+    main()

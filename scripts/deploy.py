@@ -43,25 +43,24 @@ def command_line():
 
 def main():
     """Deploy the sail; sys.exit with one sentence if that cannot be."""
-    with plain_errors("deploy"):
-        arguments = command_line()
-        overrides, _, case = batch_row()
-        out = arguments.out or (Path("out") / case.replace("/", "_") if case else Path("out"))
-        parameters = from_arguments(arguments, overrides)
-        look = window.Watch() if arguments.watch else sail.look_away
-        films = []
-        with new_results(out) as part:
-            summary = sail.deploy(
-                parameters,
-                part,
-                pictures=not arguments.no_pictures,
-                page=not arguments.no_report,
-                look=look,
-            )
-            if arguments.animation:
-                from membrane.animation import animate  # loads VTK's renderer
+    arguments = command_line()
+    overrides, _, case = batch_row()
+    out = arguments.out or (Path("out") / case.replace("/", "_") if case else Path("out"))
+    parameters = from_arguments(arguments, overrides)
+    look = window.Watch() if arguments.watch else sail.look_away
+    films = []
+    with new_results(out) as part:
+        summary = sail.deploy(
+            parameters,
+            part,
+            pictures=not arguments.no_pictures,
+            page=not arguments.no_report,
+            look=look,
+        )
+        if arguments.animation:
+            from membrane.animation import animate  # loads VTK's renderer
 
-                films = animate(part)
+            films = animate(part)
     found, wall = summary["measures"], summary["wall_time"]
     reached = found["time_of_rate_0.9"]
     print(
@@ -82,5 +81,6 @@ def main():
             look.wait()
 
 
-main()
+with plain_errors("deploy"):
+    main()
 utils.waitIfBatch()

@@ -176,7 +176,7 @@ def main():
     """Deploy it and tell about the spin; sys.exit with one sentence if that cannot be."""
     arguments = command_line()
     given = {name: getattr(arguments, name) for name in OPTIONS}
-    with plain_errors("ikaros"), new_results(arguments.out) as part:
+    with new_results(arguments.out) as part:
         found = deploy(replace(IKAROS, **given), arguments.spin, part)
     spin = found["spin_rpm"]
     print(
@@ -191,4 +191,5 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    with plain_errors("ikaros"):
+        main()

@@ -42,11 +42,10 @@ def main():
     )
     parser.add_argument("--duration", type=float, default=1.0, metavar="s", help="[s] (default 1)")
     arguments = parser.parse_args()
-    with plain_errors("miura"):
-        chosen = parameters(arguments.duration)
-        sheet = pattern_sail.read_sheet(PATTERN, chosen)
-        with new_results(arguments.out) as part:
-            summary = pattern_sail.fly(sheet, chosen, part, shown=INSTANTS)
+    chosen = parameters(arguments.duration)
+    sheet = pattern_sail.read_sheet(PATTERN, chosen)
+    with new_results(arguments.out) as part:
+        summary = pattern_sail.fly(sheet, chosen, part, shown=INSTANTS)
     found = summary["measures"]
     print(
         f"Open to {100 * found['final_projected_area']:.1f} % of the flat area after "
@@ -59,4 +58,5 @@ def main():
             print(f"  {arguments.out / name}")
 
 
-main()
+with plain_errors("miura"):
+    main()

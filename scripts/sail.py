@@ -33,14 +33,13 @@ def command_line():
 
 def main():
     """Spin the sail; sys.exit with one sentence if that cannot be."""
-    with plain_errors("sail"):
-        arguments = command_line()
-        out, pictures = arguments.out, not arguments.no_pictures
-        parameters = from_arguments(arguments, kind=PatternParameters)
-        sheet = pattern_sail.read_sheet(arguments.file, parameters)
-        with new_results(out) as part:
-            page = not arguments.no_report
-            summary = pattern_sail.fly(sheet, parameters, part, pictures, page=page)
+    arguments = command_line()
+    out, pictures = arguments.out, not arguments.no_pictures
+    parameters = from_arguments(arguments, kind=PatternParameters)
+    sheet = pattern_sail.read_sheet(arguments.file, parameters)
+    with new_results(out) as part:
+        page = not arguments.no_report
+        summary = pattern_sail.fly(sheet, parameters, part, pictures, page=page)
     found = summary["measures"]
     print(
         f"Projected area {found['final_projected_area']:.3f} of the flat one after "
@@ -56,4 +55,5 @@ def main():
         print(f"  {out / name}")
 
 
-main()
+with plain_errors("sail"):
+    main()

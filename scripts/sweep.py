@@ -8,13 +8,12 @@ scripts/case.py leaves them; it needs no YADE.
 
 import argparse
 import os
-import signal
 import sys
 from pathlib import Path
 
 import sweeping  # noqa: F401  (makes parts of membrane importable without YADE)
 from membrane.case_folder import COMPLETE, DAMAGED, DIVERGED
-from membrane.commands import plain_errors
+from membrane.commands import folder, plain_errors
 from membrane.parameters import (
     TABLE_2_CASES,
     TABLE_2_DURATION,
@@ -34,7 +33,7 @@ def command_line():
     commands = parser.add_subparsers(dest="command", required=True)
     run = commands.add_parser("run", help="run what is missing, and report")
     run.add_argument(
-        "--out", type=Path, default=Path("out/sweep"), metavar="DIR", help="default: out/sweep"
+        "--out", type=folder, default=Path("out/sweep"), metavar="DIR", help="default: out/sweep"
     )
     run.add_argument(
         "-j",
@@ -55,7 +54,7 @@ def command_line():
         "--no-pictures", action="store_true", help="neither pictures nor pages of single cases"
     )
     only = commands.add_parser("report", help="report what is there")
-    only.add_argument("folder", type=Path, help="folder of the sweep, or of the cases")
+    only.add_argument("folder", type=folder, help="folder of the sweep, or of the cases")
     defaults = {"duration": TABLE_2_DURATION}
     return parse(run, several=TABLE_2_CASES, defaults=defaults, root=parser)
 
@@ -71,20 +70,19 @@ def main():
     for name in axes:
         setattr(arguments, name, getattr(SailParameters(), name))
     cases = grid.grid(from_arguments(arguments), **axes)
-    folder = arguments.out.absolute()
-    grid.refuse_other_results(folder)
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit("sweep: terminated"))  # ends the jobs, too
-    with batch.alone(folder):
-        grid.plan(folder, cases)
+    out = arguments.out.absolute()
+    grid.refuse_other_results(out)
+    with batch.alone(out):
+        grid.plan(out, cases)
         batch.run(
-            folder,
+            out,
             cases,
             arguments.jobs,
             arguments.checkpoint_every,
             not arguments.no_pictures,
             tell,
         )
-        return tell_report(folder)
+        return tell_report(out)
 
 
 def tell(line):
@@ -92,9 +90,9 @@ def tell(line):
     print(f"sweep: {line}", file=sys.stderr, flush=True)
 
 
-def tell_report(folder):
+def tell_report(out):
     """Write the report and say what it says; returns 1 if a case is missing or damaged."""
-    found = report(folder)
+    found = report(out)
     states = [status.state for status in found]
     complete, diverged = states.count(COMPLETE), states.count(DIVERGED)
     print(f"{complete} of {len(found)} cases are complete, {diverged} diverged.")
@@ -106,7 +104,7 @@ def tell_report(folder):
             print(f"  {status.name} is damaged: {status.reason}")
         elif status.state != COMPLETE:
             print(f"  {status.name} is missing ({status.state}): {status.reason}")
-    print(f"Look at {folder / 'report.html'}")
+    print(f"Look at {out / 'report.html'}")
     return 0 if complete + diverged == len(found) else 1
 
 

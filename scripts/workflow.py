@@ -7,6 +7,7 @@ traceback.
 
 import argparse
 import os
+import re
 import sys
 from pathlib import Path
 
@@ -26,9 +27,19 @@ def config_files(options):
     return parser.parse_known_args(options)[0].configfile
 
 
+def check_cores(options):
+    """Raise ValueError if options ask snakemake for less than one core: it would wait for ever."""
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    parser.add_argument("-c", "--cores", "-j", "--jobs", nargs="?", action="append", default=[])
+    for number in parser.parse_known_args(options)[0].cores:
+        if number and re.fullmatch(r"-?\d+", number) and int(number) < 1:
+            raise ValueError(f"{number} cores or jobs: must be at least 1")
+
+
 def main():
     """Check, and become snakemake."""
     options = sys.argv[1:] or ["--cores", "all"]
+    check_cores(options)
     for path in config_files(options):
         check_file(path)
     command = ["snakemake", "--snakefile", str(SNAKEFILE), "--rerun-incomplete", *options]

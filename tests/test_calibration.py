@@ -81,7 +81,8 @@ class TestTarget(unittest.TestCase):
         self.assertLess(np.abs(many[0] / noise - 1).max(), 0.25)
 
     def test_curves_of_the_table_are_taken_until_the_time_given(self):
-        found = target.read_target(self.write(self.rows()), until=0.0155)
+        text = self.rows().replace(",0\n", ",?\n")  # in a column that is not asked for
+        found = target.read_target(self.write(text), until=0.0155)
         self.assertEqual(found.columns, ("deployment_rate",))
         self.assertEqual(found.values.tolist(), [list(range(16))])
 
@@ -89,8 +90,8 @@ class TestTarget(unittest.TestCase):
         cases = {
             "no column phase_difference": (self.rows(), ["phase_difference"], 1.0),
             "no column time": (self.rows().replace("time", "tme"), [], 1.0),
-            "at least": (self.rows(), [], 0.005),
-            "not numbers": (self.rows(row_3="?"), [], 1.0),
+            "has 6 times": (self.rows(), [], 0.005),
+            "line 5, deployment_rate: is .\\?.; must be a finite": (self.rows(row_3="?"), [], 1.0),
             "grow": (self.rows().replace("0.004,", "0.003,"), [], 1.0),
             "no column phase_difference or deployment_rate": ("time,a\n0,1\n", [], 1.0),
         }
@@ -229,8 +230,11 @@ class TestCommand(unittest.TestCase):
     def test_what_cannot_be_is_refused_in_one_sentence(self):
         path = scratch() / "flat.csv"
         path.write_text("time,deployment_rate\n" + "".join(f"{i / 200},0.1\n" for i in range(20)))
-        self.refused("not found", scratch() / "absent.csv")
+        self.refused("No such file", scratch() / "absent.csv")
         self.refused("must be > 0 and grow", path, "--beta", "5", "1")
+        self.refused("must be > 0 and grow", path, "--beta", "5", "inf")
+        self.refused("--seed -1: must be >= 0", path, "--seed", "-1")
+        self.refused("must name a folder", path, "--out", "")
         self.refused("is chosen here", path, "--duration=2")
         self.refused("no column phase_difference", path, "--column", "phase_difference")
         self.refused("does not vary", path)
@@ -240,6 +244,7 @@ class TestCommand(unittest.TestCase):
         rows = "".join(f"{i / 1000},{i / 20}\n" for i in range(20))
         path.write_text("time,deployment_rate\n" + rows)
         self.refused("thickness = -1.0 m", path, "--thickness=-1")
+        self.refused("Not a directory", path, "--out", path / "below")
 
 
 @long

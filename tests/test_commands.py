@@ -98,9 +98,12 @@ class TestCommandLines(BadDayTest):
             ("--fold-lines", "1000000", "must be .*1000"),
             ("--spool-facets", "100000000", "must be"),
             ("--out", "", "--out: must name a folder"),
+            ("--parameters", "", "No such file"),
         ):
             status = 2 if option == "--out" else 1
             self.ends(start("deploy.py", option, value), status, f"^deploy: .*{sentence}")
+        self.ends(start("sweep.py", "run", "--out", ""), 2, "^sweep run: error: .*name a folder")
+        self.ends(start("ikaros.py", "--spin", "0"), 1, "^ikaros: omega = 0.0 rad/s must be > 0")
         self.ends(start("chart.py", "--steps", "0"), 2, "^chart: error: .*--steps: 0: must be")
         self.ends(start("parts.py", "--members", "1"), 2, "^parts: error: --members 1: must be")
         huge = scratch() / "huge.json"
@@ -205,12 +208,15 @@ class TestEarlierResults(BadDayTest):
             process.send_signal(signal.SIGINT)
             self.ends(process, STOPPED, "stopped by Ctrl-C")
 
-    def test_sigterm_leaves_them_whole(self):
-        process = start("deploy.py", *SMALL, "--out", self.folder)
-        while "deploying" not in process.stderr.readline():
-            self.assertIsNone(process.poll())
-        process.terminate()
-        self.ends(process, TERMINATED, "^deploy: terminated")
+    def test_sigterm_and_the_end_of_the_terminal_leave_them_whole(self):
+        for number in (signal.SIGTERM, signal.SIGHUP):
+            if signal.getsignal(number) == signal.SIG_IGN:  # as under nohup
+                continue
+            process = start("deploy.py", *SMALL, "--out", self.folder)
+            while "deploying" not in process.stderr.readline():
+                self.assertIsNone(process.poll())
+            process.send_signal(number)
+            self.ends(process, TERMINATED, "^deploy: terminated")
 
     def check_on_disk(self, size, mode, sentence):
         """How a run ends on a file system of its own, where earlier results are, too."""
@@ -236,6 +242,16 @@ class TestEarlierResults(BadDayTest):
 
     def test_read_only_disk_leaves_them_whole(self):
         self.check_on_disk("8m", "ro", "^deploy: .*Read-only file system")
+
+
+class TestOutput(BadDayTest):
+    def test_output_that_nobody_reads_is_a_sentence(self):
+        process = start("deploy.py", *SHORT, "--no-pictures", "--out", scratch() / "unread")
+        while "deploying" not in process.stderr.readline():
+            self.assertIsNone(process.poll())
+        process.stdout.close()
+        self.ends(process, 1, "^deploy: nobody reads what it prints")
+        self.assertTrue((scratch() / "unread" / "summary.json").exists())
 
 
 class TestControlC(BadDayTest):

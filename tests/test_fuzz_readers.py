@@ -6,11 +6,13 @@ meanwhile, so that a count that is believed before it is borne out makes the tes
 """
 
 import copy
+import importlib
 import json
 import os
 import random
 import re
 import resource
+import sys
 import unittest
 from functools import lru_cache
 
@@ -23,7 +25,10 @@ from membrane.miura import miura
 from membrane.output import HistoryWriter, read_history
 from membrane.parameters import SailParameters, check, read_parameters
 from membrane.patterns import crease_pattern
-from support import FULL, gmsh_sheet, scratch
+from support import FULL, ROOT, gmsh_sheet, scratch
+
+sys.path.append(str(ROOT / "scripts"))
+target = importlib.import_module("calibration.target")
 
 FILES = 10_000 if os.environ.get(FULL) else 1_500
 MEMORY = 2**30  # bytes that a reader of files of a few kilobytes may ask for
@@ -207,6 +212,12 @@ def history_seeds():
 
 
 @lru_cache(maxsize=None)
+def target_seeds():
+    rows = [f"{i / 1000},{0.5 - i * i / 900},{i**3},measured" for i in range(14)]
+    return ["\n".join(["time,phase_difference,deployment_rate,note", *rows, ""]).encode()]
+
+
+@lru_cache(maxsize=None)
 def parameter_seeds():
     values = SailParameters().as_dict()
     return [json.dumps(values).encode(), json.dumps({"parameters": values}).encode()]
@@ -255,6 +266,13 @@ def check_history(test, columns):
     test.assertTrue(all(columns))
 
 
+def check_target(test, found):
+    """Curves of finite numbers at growing times, which vary."""
+    test.assertEqual(found.values.shape, (len(found.columns), len(found.times)))
+    test.assertTrue(np.all(np.isfinite([found.times, *found.values])))
+    test.assertTrue(np.all(np.diff(found.times) > 0) and np.all(np.isfinite(found.noise)))
+
+
 def check_parameters(test, parameters):
     check(parameters)
 
@@ -263,6 +281,7 @@ READERS = {
     "fold": (read_fold, fold_seeds, check_fold, (damaged, damaged_json), 4),
     "msh": (msh.read_msh, msh_seeds, check_msh, (damaged,), 3),
     "csv": (read_history, history_seeds, check_history, (damaged,), 2),
+    "target": (target.read_target, target_seeds, check_target, (damaged,), 1),
     "json": (read_parameters, parameter_seeds, check_parameters, (damaged, damaged_json), 1),
 }
 
@@ -306,9 +325,10 @@ class TestFuzzedReaders(unittest.TestCase):
             for number, content in enumerate(seeds()):
                 content = content.rstrip()
                 size = len(content)
-                step = max(1, size // (200 if kind != "csv" else size))
+                is_table = kind in ("csv", "target")
+                step = max(1, size // (size if is_table else 200))
                 for end in range(0, size, step):
-                    if kind == "csv" and content[:end].endswith(b"\n"):
+                    if is_table and content[:end].endswith(b"\n"):
                         continue  # a table of fewer lines is one
                     with self.subTest(kind=kind, seed=number, end=end):
                         self.assertFalse(

@@ -95,6 +95,22 @@ class TestFaces(unittest.TestCase):
             with self.subTest(words=words), self.assertRaisesRegex(ValueError, words):
                 pattern_of(frame(SQUARE, edges, letters, faces=loops))
 
+    def test_a_face_that_touches_itself_is_refused(self):
+        points = [*SQUARE, (2, 0)]  # the loop runs back over its first side
+        loop = np.array([0, 1, 2, 3, 4])
+        with self.assertRaisesRegex(ValueError, "vertex 4 lies on the edge from vertex 0 to"):
+            pattern_of(frame(points, ring(0, 5), "BBBBB", faces=(loop,)))
+
+    def test_a_folded_form_without_area_is_refused(self):
+        edges, faces = [*ring(0, 4), (0, 2)], (np.array([0, 1, 2]), np.array([0, 2, 3]))
+        for points, words in (
+            ([(0, 0, 0), (1, 0, 1), (2, 0, 2), (3, 0, 3)], "no area"),
+            ([(0, 0, 0), (0, 0, 0), (2, 0, 2), (3, 3, 0)], "edge 0 has no length"),
+        ):
+            one = frame(points, edges, "BBBBV", faces=faces, classes=("foldedForm",))
+            with self.subTest(points), self.assertRaisesRegex(ValueError, words):
+                pattern_of(one)
+
     def test_a_unit_without_length_must_be_told(self):
         one = replace(frame(SQUARE, ring(0, 4), "BBBB"), unit="unit")
         with self.assertRaisesRegex(ValueError, "'unit'"):
@@ -201,6 +217,16 @@ class TestMesh(unittest.TestCase):
         np.testing.assert_allclose(
             geometry.side_lengths(mesh.start, sides), geometry.side_lengths(mesh.nodes, sides)
         )
+
+    def test_what_gmsh_cannot_take_is_refused(self):
+        thin = [(0, 0), (1e8, 0), (1e8, 1), (0, 1)]  # gmsh would ask whether to go on, and wait
+        with self.assertRaisesRegex(ValueError, "more than 200000 sides"):
+            mesh_pattern(pattern_of(frame(thin, ring(0, 4), "BBBB")))
+        spike = [(-154251.31243085643, -6.17560442434871e-07), (2, 0), (2, 2), (0, 2)]
+        spike += [(0.5, 1), (1.5, 1)]  # on which gmsh ends its process
+        pattern = pattern_of(frame(spike, [*ring(0, 4), (4, 5), (0, 4)], "BBBBCV"))
+        with self.assertRaisesRegex(ValueError, "gmsh cannot mesh the pattern: it crashes"):
+            mesh_pattern(pattern)
 
     def test_a_size_out_of_range_is_refused(self):
         pattern = pattern_of(frame(SQUARE, ring(0, 4), "BBBB"))

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Output folders: earlier results stay whole until a run has all of its own."""
 
+import contextlib
+import os
+import shutil
 import subprocess
 import unittest
 
@@ -15,6 +18,35 @@ with new_results(sys.argv[1]):
     print("held", flush=True)
     sys.stdin.read()
 """
+
+
+def stopped(count, work):
+    """Do some work that Ctrl-C stops after so many renames."""
+    renames = iter([os.rename] * count)
+
+    def rename(*paths):
+        for really in renames:
+            return really(*paths)
+        os.rename = unchanged
+        raise KeyboardInterrupt
+
+    unchanged, os.rename = os.rename, rename
+    try:
+        with contextlib.suppress(KeyboardInterrupt):
+            work()
+    finally:
+        os.rename = unchanged
+
+
+def killed(count, work):
+    """Do some work in a process of its own, which is killed after so many renames."""
+    child = os.fork()
+    if not child:
+        renames = iter([os.rename] * count)
+        os.rename = lambda *paths: next(renames, lambda *_: os._exit(9))(*paths)
+        work()
+        os._exit(0)
+    os.waitpid(child, 0)
 
 
 class TestNewResults(unittest.TestCase):
@@ -56,6 +88,28 @@ class TestNewResults(unittest.TestCase):
             left = self.found()
             self.assertEqual({name: left[name] for name in before}, before)
             self.assertEqual(left[f"{UNFINISHED}/history.csv"], "half")
+
+    def test_exchange_that_is_cut_off_leaves_the_results_of_one_run(self):
+        old = {"history.csv": "old", "other.csv": "old", "shapes/film_old.vtu": "old"}
+        new = {name.replace("old", "new"): "new" for name in old}
+        outcomes = []
+        for count in range(9):
+            for cut_off in (stopped, killed):
+                with self.subTest(renames=count, by=cut_off.__name__):
+                    shutil.rmtree(self.folder, ignore_errors=True)
+                    self.write(self.folder, history="old", other="old")
+                    (self.folder / "shapes" / "film_old.vtu").write_text("old")
+                    cut_off(count, self.exchange)
+                    with contextlib.suppress(ZeroDivisionError), new_results(self.folder):
+                        1 / 0  # a next run, which fails
+                    outcomes.append(self.found())
+                    self.assertIn(outcomes[-1], (old, new))
+        self.assertIn(old, outcomes)
+        self.assertIn(new, outcomes)
+
+    def exchange(self):
+        with new_results(self.folder) as part:
+            self.write(part, history="new", other="new")
 
     def test_failure_before_the_first_file_leaves_no_trace(self):
         with self.assertRaises(ValueError), new_results(self.folder / "a" / "b"):

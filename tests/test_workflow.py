@@ -143,6 +143,12 @@ class TestBadConfiguration(CommandTest):
         done = self.start(new_folder("no_file"), "--configfile=nowhere.yaml")
         self.ends_with_one_sentence(done, "workflow", "nowhere.yaml")
 
+    def test_no_core_at_all_is_one_sentence(self):
+        folder = new_folder("no_core")
+        for option in ("-j0", "--jobs=-1", "--cores=00"):
+            done = self.start(folder, option)
+            self.ends_with_one_sentence(done, "workflow", "cores or jobs: must be at least 1")
+
     def test_what_the_command_line_configures_is_checked_too(self):
         folder = new_folder("command_line")
         bad = {
@@ -151,6 +157,7 @@ class TestBadConfiguration(CommandTest):
             "options={zeta: x}": "config: options: zeta = 'x' must be a number",
             "options={beta: 3}": "config: options: beta is in the grid, too",
             "options={parameters: nowhere.json}": "nowhere.json",
+            "out=tiny.yaml": "config: out = 'tiny.yaml': tiny.yaml is no folder to write to",
         }
         for option, reason in bad.items():
             with self.subTest(option):

@@ -71,7 +71,7 @@ class Deployments:
             diverged = (Path(folder) / LAST_GOOD).exists()
             if done.returncode and not diverged:
                 said = [line for line in done.stderr.splitlines() if line.startswith("deploy:")]
-                raise RuntimeError(said[-1] if said else done.stderr.strip())
+                raise RuntimeError(said[-1] if said else f"a run ended by {done.returncode}")
             curves = None if diverged else self._read(Path(folder) / "history.csv")
         self.tell(values, curves)
         return curves

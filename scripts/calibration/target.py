@@ -4,10 +4,13 @@
 from dataclasses import dataclass
 
 import numpy as np
+from membrane.files import BadFile
+from membrane.history import read_history
 
 from . import COLUMNS
 
 FEWEST = 12  # times
+LARGEST = 1e6  # of values, far beyond any angle or rate
 
 
 @dataclass(frozen=True)
@@ -38,7 +41,7 @@ def noise_of(values):
 
 
 def read_target(path, columns=(), until=0.1):
-    """Target from a CSV file with a header, as history.csv; other columns are not looked at.
+    """Target from a CSV file with a header, as history.csv; other columns may hold anything.
 
     Parameters
     ----------
@@ -55,27 +58,24 @@ def read_target(path, columns=(), until=0.1):
 
     Raises
     ------
-    ValueError
-        If a column is missing, a number is not finite, a curve is flat, or times do not grow or
-        are too few.
+    BadFile
+        If it is no table, a column is missing, a number is not finite, a curve is flat, or times do
+        not grow or are too few.
     """
-    table = np.atleast_1d(np.genfromtxt(path, delimiter=",", names=True))
-    found = table.dtype.names or ()
+    found = read_history(path, ("time", *(columns or COLUMNS)))
     columns = tuple(columns) or tuple(name for name in COLUMNS if name in found)
     missing = [name for name in ("time", *columns) if name not in found]
     if missing or not columns:
         wanted = ", ".join(missing) or " or ".join(COLUMNS)
-        raise ValueError(f"{path}: has no column {wanted}")
-    table = table[table["time"] <= until]
-    values = np.array([table[name] for name in columns])
-    if len(table) < FEWEST:
-        raise ValueError(
-            f"{path}: has {len(table)} times up to {until:g} s; must be at least {FEWEST}"
-        )
-    if not (np.isfinite(values).all() and np.isfinite(table["time"]).all()):
-        raise ValueError(f"{path}: has values that are not numbers")
-    if table["time"][0] < 0 or np.any(np.diff(table["time"]) <= 0):
-        raise ValueError(f"{path}: times must be >= 0, the release, and grow")
+        raise BadFile(path, "line 1", f"has no column {wanted}")
+    early = found["time"] <= until
+    times, values = found["time"][early], np.array([found[name][early] for name in columns])
+    if len(times) < FEWEST:
+        raise BadFile(path, "", f"has {len(times)} times up to {until:g} s, not {FEWEST}")
+    if times[0] < 0 or np.any(np.diff(times) <= 0):
+        raise BadFile(path, "", "times must be >= 0, the release, and grow")
+    if np.max(np.abs(values)) > LARGEST:
+        raise BadFile(path, "", f"has values beyond {LARGEST:g}")
     if not np.ptp(values, axis=1).all():
-        raise ValueError(f"{path}: a curve does not vary")
-    return Target(table["time"], columns, values, noise_of(values))
+        raise BadFile(path, "", "a curve does not vary")
+    return Target(times, columns, values, noise_of(values))

@@ -12,7 +12,7 @@ DEBIAN = {"vtkmodules": "vtk9"}  # packages whose names in Python and in Debian 
 
 
 class Terminated(BaseException):
-    """SIGTERM has come; as an exception, so that everything that was begun is cleared away."""
+    """SIGTERM or SIGHUP has come; as an exception, so that what was begun is cleared away."""
 
 
 def folder(text):
@@ -44,7 +44,9 @@ def plain_errors(command, stopped="stopped by Ctrl-C"):
     stopped : str
         What to say after Ctrl-C.
     """
-    before = signal.signal(signal.SIGTERM, _terminate)
+    # Under nohup SIGHUP is ignored, and stays so.
+    heard = [s for s in (signal.SIGTERM, signal.SIGHUP) if signal.getsignal(s) != signal.SIG_IGN]
+    before = {number: signal.signal(number, _terminate) for number in heard}
     try:
         yield
     except KeyboardInterrupt:
@@ -59,10 +61,13 @@ def plain_errors(command, stopped="stopped by Ctrl-C"):
         package = (error.name or "").partition(".")[0]
         by_hand = f"apt-get install python3-{DEBIAN.get(package, package)}"
         sys.exit(f"{command}: {error}; scripts/run.sh {command} installs it, or by hand: {by_hand}")
+    except BrokenPipeError:
+        sys.exit(f"{command}: nobody reads what it prints any more")
     except (ImportError, ValueError, RuntimeError, OSError) as error:
         sys.exit(f"{command}: {str(error) or type(error).__name__}")
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def _terminate(number, frame):

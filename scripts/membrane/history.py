@@ -10,13 +10,19 @@ import numpy as np
 from .files import BadFile, read_text, shown
 
 
-def read_history(path):
-    """Columns of a .csv file of HistoryWriter: dict of (S,) float by name.
+def read_history(path, wanted=None):
+    """Columns of a .csv file as HistoryWriter makes them: dict of (S,) float by name.
+
+    Parameters
+    ----------
+    path : path
+    wanted : collection of str, optional
+        Names of the columns to read, where there are such; others may hold anything. Default: all.
 
     Raises
     ------
     BadFile
-        If it is no complete table of finite numbers under names that differ.
+        If it is no complete table, under names that differ, with finite numbers in these columns.
     """
     text = read_text(path)
     if not text.endswith("\n"):
@@ -27,15 +33,15 @@ def read_history(path):
         raise BadFile(path, "", f"is no table: {error}") from None
     if not all(names) or len(set(names)) < len(names) or any(map(is_value, names)):
         raise BadFile(path, "line 1", "must name every column, each otherwise")
+    chosen = {name: i for i, name in enumerate(names) if wanted is None or name in wanted}
     for number, row in enumerate(rows, start=2):
         if len(row) != len(names):
             raise BadFile(path, f"line {number}", f"has {len(row)} values for {len(names)} columns")
         for name, value in zip(names, row):
-            if not is_value(value):
+            if name in chosen and not is_value(value):
                 reason = f"is {shown(value)}; must be a finite number"
                 raise BadFile(path, f"line {number}, {shown(name)[1:-1]}", reason)
-    table = np.array(rows, dtype=float).reshape(-1, len(names))
-    return {name: table[:, i] for i, name in enumerate(names)}
+    return {name: np.array([row[i] for row in rows], dtype=float) for name, i in chosen.items()}
 
 
 def is_value(text):

@@ -250,7 +250,7 @@ def parse(parser, kind=SailParameters, *, several=None, defaults=None, root=None
     root = root or parser
     arguments = root.parse_args()
     file = getattr(arguments, "parameters", None)
-    if file:
+    if file is not None:
         values = read_values(file, kind)
         parser.set_defaults(**{n: v for n, v in values.items() if n not in (several or {})})
         arguments = root.parse_args()

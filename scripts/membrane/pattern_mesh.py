@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Meshes of crease patterns by gmsh: triangles whose sides run along every edge of the pattern."""
 
+import os
 from collections import defaultdict
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, replace
+from multiprocessing import get_context
 
 import numpy as np
 
@@ -11,6 +15,7 @@ from .geometry import triangle_angles, unique_sides
 from .patterns import face_pairs
 
 MOST_TRIANGLES = 2_000_000
+MOST_SIDES = 200_000  # along the edges of a pattern; of slivers there are many
 DEFAULT_TRIANGLES = 800  # about as many as the paper's sail has
 GMSH_TRIANGLE = 2
 BARELY = 0.05  # rad
@@ -93,6 +98,8 @@ def mesh_pattern(pattern, size=None):
         raise ValueError(f"size = {size} m: must be finite and > 0")
     if pattern.area / size**2 > MOST_TRIANGLES / 2.3:
         raise ValueError(f"size = {size} m: would make more than {MOST_TRIANGLES} triangles")
+    if pattern.edge_lengths.sum() / size > MOST_SIDES:
+        raise ValueError(f"size = {size} m: would cut the edges into more than {MOST_SIDES} sides")
     found = _without_flat_triangles(_with_gmsh(pattern, size), SHORTEST * size)
     nodes = found.nodes
     start = None if pattern.folded is None else _carried_over(pattern, found)
@@ -165,6 +172,20 @@ class _Raw:
 
 
 def _with_gmsh(pattern, size):
+    """What `_by_gmsh` gives, from a process of its own, for on absurd patterns gmsh ends it."""
+    with ProcessPoolExecutor(1, get_context("fork"), _say_nothing) as child:
+        try:
+            return child.submit(_by_gmsh, pattern, size).result()
+        except BrokenProcessPool:
+            raise ValueError("gmsh cannot mesh the pattern: it crashes") from None
+
+
+def _say_nothing():
+    """Send standard error to nowhere."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+
+
+def _by_gmsh(pattern, size):
     """Let gmsh mesh every face so that the meshes meet along the edges."""
     try:
         import gmsh
@@ -177,6 +198,7 @@ def _with_gmsh(pattern, size):
         for option, value in (
             ("General.Terminal", 0),
             ("General.NumThreads", 1),  # the same mesh everywhere
+            ("General.ExpertMode", 1),  # it must not wait for answers
             ("Mesh.Algorithm", 6),  # frontal Delaunay: nearly equilateral triangles
             ("Mesh.MeshSizeExtendFromBoundary", 0),
             ("Mesh.MeshSizeMin", size),

@@ -55,6 +55,11 @@ class CreasePattern:
         """Length of the diagonal of the pattern's bounding box [m]."""
         return float(np.linalg.norm(np.ptp(self.vertices, axis=0)))
 
+    @property
+    def edge_lengths(self):
+        """Lengths (E,) of the edges [m]."""
+        return np.linalg.norm(np.diff(self.vertices[self.edges], axis=1)[:, 0], axis=1)
+
     def face_sides(self, face):
         """All sides of a face as pairs of vertices (n, 2), the face on the left of each."""
         loops = (self.faces[face], *self.holes[face])
@@ -220,8 +225,10 @@ def _with_faces(pattern):
         faces, holes = find_faces(pattern.vertices, pattern.edges, pattern.letters)
         return replace(pattern, faces=faces, holes=holes)
     for f, face in enumerate(pattern.faces):
-        if _loop_area(pattern.vertices, face) <= 0:
+        if not _loop_area(pattern.vertices, face) > 0:
             raise ValueError(f"face {f} has no area or runs clockwise; it must be the other way")
+        if len(face) > 3:  # a loop that touches itself makes gmsh crash
+            _check_touching(pattern.vertices, pattern.face_sides(f))
     return pattern
 
 
@@ -230,10 +237,8 @@ def _check_edges(pattern):
     vertices, edges = pattern.vertices, pattern.edges
     if not 0 < len(edges) <= MOST_EDGES:
         raise ValueError(f"the pattern has {len(edges)} edges; must be 1 to {MOST_EDGES}")
-    lengths = np.linalg.norm(np.diff(vertices[edges], axis=1)[:, 0], axis=1)
     tiny = SAME_PLACE * pattern.size
-    if np.min(lengths) <= tiny:
-        raise ValueError(f"edge {int(np.argmin(lengths))} has no length")
+    _check_lengths(pattern)
     _, first, counts = np.unique(
         np.sort(edges, axis=1), axis=0, return_index=True, return_counts=True
     )
@@ -252,6 +257,12 @@ def _check_edges(pattern):
         if np.any(cross):
             pair = sorted((e, int(rest[np.argmax(cross)])))
             raise ValueError(f"edges {pair[0]} and {pair[1]} cross where there is no vertex")
+
+
+def _check_lengths(pattern):
+    """Refuse edges of no length."""
+    if np.min(pattern.edge_lengths, initial=np.inf) <= SAME_PLACE * pattern.size:
+        raise ValueError(f"edge {int(np.argmin(pattern.edge_lengths))} has no length")
 
 
 def _near_pairs(plane, edges):
@@ -539,16 +550,21 @@ def fold_angles_of(pattern, places, pairs):
     return np.where(np.all(pairs >= 0, axis=1), angles, 0.0)
 
 
-def _normal(loop):
-    """Unit normal (3,) of a polygon (n, 3), as flat as may be (Newell's method)."""
+def _normal(loop, tiny=0.0):
+    """Unit normal (3,) of a polygon (n, 3), as flat as may be (Newell's method).
+
+    It is 0 where the polygon's area is at most half of `tiny` [m2].
+    """
     normal = np.cross(loop, np.roll(loop, -1, axis=0)).sum(axis=0)
-    return normal / (np.linalg.norm(normal) or 1.0)
+    size = np.linalg.norm(normal)
+    return normal / size if size > tiny else np.zeros(3)
 
 
 def _unrolled(pattern):
     """Flat vertices (V, 3) [m] of a pattern whose `vertices` are those of a folded form."""
     if not pattern.faces:
         raise ValueError("a folded form without faces_vertices cannot be unrolled")
+    _check_lengths(pattern)
     flat = [_laid_flat(pattern, face) for face in range(len(pattern.faces))]
     ids = [_vertices_of(pattern, face) for face in range(len(pattern.faces))]
     for face, other, _, a, b, _ in _outwards(pattern):
@@ -564,7 +580,10 @@ def _unrolled(pattern):
 def _laid_flat(pattern, face):
     """Corners of a face in its own plane, as complex numbers [m]."""
     corners = pattern.vertices[_vertices_of(pattern, face)]
-    normal = _normal(pattern.vertices[pattern.faces[face]])
+    loop = pattern.vertices[pattern.faces[face]]
+    normal = _normal(loop - loop[0], SAME_PLACE * pattern.size**2)
+    if not np.any(normal):
+        raise ValueError(f"face {face} of the folded form has no area")
     away = (corners - corners[0]) @ normal
     if np.max(np.abs(away)) > STRETCH * pattern.size:
         raise ValueError(f"face {face} of the folded form is not flat")

@@ -11,6 +11,7 @@ from .case_folder import PART
 
 UNFINISHED = "unfinished"  # folder within the output folder
 LOCK = "lock"
+GOING, GONE = "earlier.part", "earlier"  # where earlier results are while they are exchanged
 
 # What the commands leave in an output folder; anything else there is not ours.
 RESULTS = (
@@ -54,6 +55,7 @@ def new_results(folder):
     is_empty = False
     try:
         with _locked(part / LOCK):
+            _settle(folder, part)
             for path in _content(part):
                 _remove(path)
             try:
@@ -94,14 +96,30 @@ def _content(part):
 def _swap(folder, part):
     """Put all that is in `part` in the place of earlier results, and delete those."""
     made = _content(part)
-    earlier = part / "earlier"
-    earlier.mkdir()
-    for name in {*RESULTS, *(path.name for path in made)}:
-        if os.path.lexists(folder / name):
-            os.rename(folder / name, earlier / name)
-    for path in made:
-        os.rename(path, folder / path.name)
-    shutil.rmtree(earlier)
+    try:
+        (part / GOING).mkdir()
+        for name in {*RESULTS, *(path.name for path in made)}:
+            if os.path.lexists(folder / name):
+                os.rename(folder / name, part / GOING / name)
+        os.rename(part / GOING, part / GONE)
+    finally:
+        _settle(folder, part)
+
+
+def _settle(folder, part):
+    """Go on with an exchange of results, or back if earlier ones are still on their way out.
+
+    Also with one that a kill has cut off: results of two runs must not stay mixed.
+    """
+    if (part / GOING).exists():
+        for path in (part / GOING).iterdir():
+            os.rename(path, folder / path.name)
+        (part / GOING).rmdir()
+    if (part / GONE).exists():
+        for path in _content(part):
+            if path.name != GONE:
+                os.rename(path, folder / path.name)
+        shutil.rmtree(part / GONE)
 
 
 def _remove(path):

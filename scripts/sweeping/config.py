@@ -2,6 +2,7 @@
 """The configuration of the workflow: a grid over any parameters, and what all cases share."""
 
 import json
+import os
 from dataclasses import fields
 from itertools import product
 from pathlib import Path
@@ -124,7 +125,11 @@ def check_places(config):
 
     They are relative to the present folder.
     """
-    refuse_other_results(Path(config["out"]))
+    out = Path(config["out"])
+    refuse_other_results(out)
+    there = next(path for path in (out, *out.parents) if path.exists())
+    if not (there.is_dir() and os.access(there, os.W_OK)):
+        raise ValueError(f"out = {shown(config['out'])}: {there} is no folder to write to")
     options = config.get("options") or {}
     if "parameters" in options:
         read_values(options["parameters"])
