@@ -12,17 +12,12 @@ import sys
 from pathlib import Path
 
 import sweeping  # noqa: F401  (makes parts of membrane importable without YADE)
-from membrane.case_folder import COMPLETE, DAMAGED, DIVERGED
 from membrane.commands import folder, plain_errors
-from membrane.parameters import (
-    TABLE_2_CASES,
-    TABLE_2_DURATION,
-    SailParameters,
-    from_arguments,
-    parse,
-)
 
 with plain_errors("sweep"):
+    from membrane.case_folder import COMPLETE, DAMAGED, DIVERGED
+    from membrane.parameters import TABLE_2_CASES, TABLE_2_DURATION, SailParameters
+    from membrane.parameters import from_arguments, parse
     from sweeping import batch, grid
     from sweeping.report import report
 

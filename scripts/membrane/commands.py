@@ -50,6 +50,7 @@ def plain_errors(command, stopped="stopped by Ctrl-C"):
     try:
         yield
     except KeyboardInterrupt:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # the end is near, and must not be disturbed
         print(f"\n{command}: {stopped}", file=sys.stderr)
         sys.exit(STOPPED)
     except Terminated:
