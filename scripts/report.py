@@ -12,9 +12,7 @@ with plain_errors("report"):
 def main():
     """Do it for each folder; sys.exit with one sentence if that cannot be."""
     parser = argparse.ArgumentParser(prog="report", description=__doc__)
-    parser.add_argument(
-        "folders", nargs="+", type=folder, metavar="FOLDER", help="output of a run"
-    )
+    parser.add_argument("folders", nargs="+", type=folder, metavar="FOLDER", help="output of a run")
     for place in parser.parse_args().folders:
         print(report.write_report(place))
 
