@@ -2,10 +2,11 @@
 """Starts the Snakemake workflow, unless a file of configuration is missing or cannot be used.
 
 Run it by `scripts/run.sh workflow [options of snakemake]`. Snakemake itself would end by a
-traceback.
+traceback, and after kill -9 want its lock to be removed by hand.
 """
 
 import argparse
+import fcntl
 import os
 import re
 import sys
@@ -36,14 +37,41 @@ def check_cores(options):
             raise ValueError(f"{number} cores or jobs: must be at least 1")
 
 
+def lock(options):
+    """Hold a lock in the folder in which snakemake works, until this process ends, however it does.
+
+    It stands for Snakemake's own, which a killed one leaves behind. Plans alone need none.
+
+    Raises
+    ------
+    RuntimeError
+        If another workflow runs there.
+    """
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    parser.add_argument("-n", "--dry-run", "--dryrun", action="store_true")
+    parser.add_argument("-d", "--directory", type=Path, default=Path())
+    asked, _ = parser.parse_known_args(options)
+    if asked.dry_run:
+        return
+    folder = asked.directory / ".snakemake"
+    folder.mkdir(parents=True, exist_ok=True)
+    handle = os.open(folder / "workflow.lock", os.O_RDWR | os.O_CREAT)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise RuntimeError(f"another workflow is running in {asked.directory.resolve()}") from None
+    os.set_inheritable(handle, True)  # snakemake holds it; it does not hand it on to its jobs
+
+
 def main():
     """Check, and become snakemake."""
     options = sys.argv[1:] or ["--cores", "all"]
     check_cores(options)
     for path in config_files(options):
         check_file(path)
-    command = ["snakemake", "--snakefile", str(SNAKEFILE), "--rerun-incomplete", *options]
-    os.execvp(command[0], command)
+    lock(options)
+    command = ["snakemake", "--snakefile", str(SNAKEFILE), "--nolock", "--rerun-incomplete"]
+    os.execvp(command[0], command + options)
 
 
 with plain_errors("workflow"):

@@ -33,7 +33,7 @@ from membrane.files import replacing, write_json
 from membrane.history import read_history
 from membrane.output import HistoryWriter
 from membrane.parameters import TABLE_2_CASES, SailParameters
-from support import ROOT, long, scratch, yade_environment
+from support import ROOT, children, kill, long, scratch, yade_environment
 from yade import utils
 
 sys.path.append(str(ROOT / "scripts"))
@@ -69,23 +69,6 @@ def start_case(folder, *options):
 
 def start_sweep(folder, *options):
     return start(["/usr/bin/python3", SWEEP, "run", "--out", folder, *options])
-
-
-def children(pid):
-    """Ids of the processes that a process started."""
-    tasks = Path(f"/proc/{pid}/task").iterdir()
-    return [int(child) for task in tasks for child in (task / "children").read_text().split()]
-
-
-def kill(process):
-    """kill -9 of a process and of everything that it started, in whatever session."""
-    family = [process.pid]
-    for pid in family:
-        os.kill(pid, signal.SIGSTOP)  # so that it starts no more
-        family += children(pid)
-    for pid in family:
-        os.kill(pid, signal.SIGKILL)
-    process.communicate()
 
 
 def kill_last_child(process):

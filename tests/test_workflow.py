@@ -11,7 +11,7 @@ import time
 import unittest
 
 from slurm import Slurm
-from support import ROOT, CommandTest, long, scratch, yade_environment
+from support import ROOT, CommandTest, kill, long, scratch, yade_environment
 
 sys.path.append(str(ROOT / "scripts"))
 FOLDER = ROOT / "scripts" / "workflow"
@@ -187,6 +187,50 @@ class TestBadConfiguration(CommandTest):
         lines = [line for line in done.stdout.splitlines() if line.startswith("yade ")]
         self.assertEqual(len(lines), 1, done.stdout)
         self.assertIn("--duration=1e-2 --no-pictures --beta=1e1 ", lines[0])
+
+
+class TestKilled(CommandTest):
+    ONE_CASE = re.sub("  (beta|alpha_crease): .*", r"  \1: [100]", TINY)
+
+    def start(self, folder):
+        return subprocess.Popen(
+            ["/usr/bin/python3", str(ROOT / "scripts" / "workflow.py"), "--cores", "1"]
+            + ["--configfile", "tiny.yaml"],
+            cwd=folder,
+            env=yade_environment(),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+
+    def finish(self, folder):
+        process = self.start(folder)
+        said, _ = process.communicate()
+        self.assertEqual(process.returncode, 0, said)
+        case = folder / "results" / "cases" / "beta_100-alpha_crease_100"
+        files = (path for path in case.rglob("*") if path.is_file() and not path.name[0] == ".")
+        return {
+            path.relative_to(case): path.read_bytes()
+            for path in files
+            if path.name != "wall_time.json"
+        }
+
+    def test_killed_workflow_goes_on_and_leaves_the_same_files(self):
+        quiet, killed = (new_folder(name) for name in ("quiet", "killed"))
+        for folder in (quiet, killed):
+            (folder / "tiny.yaml").write_text(self.ONE_CASE)
+        expected = self.finish(quiet)
+        self.assertGreater(len(expected), 5)
+
+        process = self.start(killed)
+        while process.poll() is None and not list(killed.glob("results/cases/*.part/begun.json")):
+            time.sleep(0.01)
+        other = self.start(killed)
+        said, _ = other.communicate()
+        self.assertEqual(other.returncode, 1)
+        self.assertEqual(said, f"workflow: another workflow is running in {killed}\n")
+        kill(process)
+        self.assertEqual(self.finish(killed), expected)
 
 
 class TestProfile(unittest.TestCase):
