@@ -223,6 +223,17 @@ class TestCase(SweepTest):
         after = {path: path.stat().st_mtime_ns for path in diverged().rglob("*")}
         self.assertEqual(after, before)
 
+    def test_folder_of_something_else_is_refused_and_nobody_is_told_to_remove_it(self):
+        folder = scratch() / "letters"
+        folder.mkdir()
+        (folder / "letter.txt").write_text("Dear")
+        process = start_case(folder, *SHORT)
+        said, _ = process.communicate()
+        self.assertEqual(process.returncode, 1)
+        self.assertIn(f"case: {folder}/case.json: is missing; choose another folder", said)
+        self.assertNotIn("remove", said)
+        self.assertEqual([path.name for path in folder.iterdir()], ["letter.txt"])
+
     def test_failed_case_keeps_its_reason_and_leaves_no_result(self):
         folder = scratch() / "refused_case"
         process = start_case(folder, *COARSE, "--dt", "1e-4")

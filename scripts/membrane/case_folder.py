@@ -68,7 +68,9 @@ class Damaged(ValueError):
 
 
 def advice(folder):
-    """What the user can do about a damaged case."""
+    """What the user can do about a damaged case, or a folder that holds something else."""
+    if not any((folder / name).exists() for name in (RESULT, HISTORY)):
+        return "choose another folder"
     return f"the case is damaged: remove {folder}, and the same command runs it again"
 
 
