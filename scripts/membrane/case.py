@@ -83,7 +83,7 @@ def finish(p, folder, checkpoints, pictures):
     Parameters
     ----------
     p, folder, pictures
-        As of `run`.
+        As of `run_case`.
     checkpoints : Checkpoints
 
     Returns
