@@ -6,6 +6,7 @@
 
 import argparse
 import os
+import signal
 import sys
 from pathlib import Path
 
@@ -19,6 +20,8 @@ def main():
     parser.add_argument("--full", action="store_true", help="also run the long tests")
     parser.add_argument("modules", nargs="*", metavar="MODULE", help="as test_creases; default all")
     arguments = parser.parse_args()
+    # Commands behind a shell's "&" begin with SIGINT ignored, and hand that on to those they start.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     for module in arguments.modules:
         if not (Path(sys.path[0]) / f"{module.partition('.')[0]}.py").is_file():
             parser.error(f"there is no test module '{module}'")

@@ -62,7 +62,7 @@ class TestDisk(unittest.TestCase):
         for error, order in lines:
             self.assertLess(float(error), 0.5)
             self.assertAlmostEqual(float(order), 2, delta=0.15)
-        self.assertGreater((scratch() / "disk.png").stat().st_size, 50_000)
+        self.assertGreater((scratch() / "out" / "disk" / "disk.png").stat().st_size, 50_000)
 
 
 if __name__ == "__main__":

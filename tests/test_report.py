@@ -553,7 +553,10 @@ class TestReportInBrowser(unittest.TestCase):
             states={"complete": 2},
             pictures={"swing.png": "The swing over alpha_c and beta."},
             columns=[("time_of_amplitude", "s", "when the largest lag is reached")] * 8,
-            cases=[{**case, "name": n, "place": n, "shapes": f"{n}/shapes.png"} for n in names],
+            cases=[
+                {**case, "name": n, "place": n, "page": "", "shapes": f"{n}/shapes.png"}
+                for n in names
+            ],
             others=[],
             common=[("spin_up_tolerance", "1e-06", "-", "residual energy", "run")],
             versions={"numpy": "1.24.2"},

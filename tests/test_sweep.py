@@ -195,7 +195,7 @@ class TestCase(SweepTest):
         """In the spin-up, after which the hub must be let go, and in the run."""
         space = ["--hub-inertia", "1e-5", "--gravity", "0", "--air-density", "0"]
         options = [*SHORT, *space, "--duration", "0.03", "--no-pictures", *OFTEN]
-        quiet, folder = scratch() / "hub", scratch() / "killed_hub" / "case"
+        quiet, folder = scratch() / "quiet_hub", scratch() / "killed_hub" / "case"
         start_case(quiet, *options).communicate()
         spin = read_history(quiet / "history.csv")["hub_spin"]
         self.assertGreater(np.ptp(spin), 1e-3 * spin[0])

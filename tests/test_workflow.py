@@ -216,7 +216,7 @@ class TestKilled(CommandTest):
         }
 
     def test_killed_workflow_goes_on_and_leaves_the_same_files(self):
-        quiet, killed = (new_folder(name) for name in ("quiet", "killed"))
+        quiet, killed = (new_folder(name) for name in ("quiet_workflow", "killed_workflow"))
         for folder in (quiet, killed):
             (folder / "tiny.yaml").write_text(self.ONE_CASE)
         expected = self.finish(quiet)
