@@ -31,7 +31,6 @@ STEPS = (5e-6, 2.5e-6, 1.25e-6)  # [s]
 LEDGER_TIME = 1.0  # [s]
 LEDGER_STEPS = (5e-6, 2.5e-6)  # [s]
 LAST_IMBALANCE = (1.02e-4, 2.66e-5)
-REFINES = (1, 2, 3)
 MESH_STEP = 0.4  # share of the critical time step of the folded sail
 
 # Ensemble.
@@ -87,17 +86,22 @@ class Deployment:
 
 
 @cache
-def _equilibrium(p):
+def _equilibrium(p, seed):
     yade.Omega().reset()
     _, built = sail.build(p)
+    if seed:
+        built.place(perturbed(built.positions(), seed))
     sail.spin_up(built, p)
     return built.positions()
 
 
-def equilibrium(p):
-    """Positions (N, 3) [m] of the folded sail at rest in the turning frame; computed once."""
+def equilibrium(p, seed=0):
+    """Positions (N, 3) [m] of the folded sail at rest in the turning frame; computed once.
+
+    Other seeds than 0: with the folded sail `perturbed` before the spin-up.
+    """
     default = SailParameters()
-    return _equilibrium(replace(p, dt=default.dt, duration=default.duration))
+    return _equilibrium(replace(p, dt=default.dt, duration=default.duration), seed)
 
 
 def begin(p, positions, ledger=True):
@@ -332,14 +336,18 @@ def ledger_checks():
 
 
 @cache
-def early(refine, dt):
-    """The run up to the last of EARLY_TIMES; `dt` None: MESH_STEP of the critical one."""
+def early(refine, dt, seed=0):
+    """The run up to the last of EARLY_TIMES; `dt` None: MESH_STEP of the critical one.
+
+    `seed`: of the `equilibrium` from which it is released.
+    """
     p = SailParameters(refine=refine, duration=EARLY_TIMES[-1])
+    start = equilibrium(p, seed)
     if dt is None:
-        _, built = begin(replace(p, dt=STEPS[-1]), equilibrium(p))
+        _, built = begin(replace(p, dt=STEPS[-1]), start)
         limit = MESH_STEP * built.forces.criticalTimeStep()
         dt = EARLY_TIMES[0] / np.ceil(EARLY_TIMES[0] / limit)
-    return deploy(replace(p, dt=dt), EARLY_TIMES[0], ledger=True)
+    return deploy(replace(p, dt=dt), EARLY_TIMES[0], positions=start, ledger=True)
 
 
 # Last values at EARLY_TIMES: rate [-] and phase difference [deg].
@@ -356,26 +364,42 @@ LAST_EARLY = {
         (0.095072, 0.210558, 0.464855, 0.72034, 0.767576),
         (-0.5544, -3.4751, -9.3463, -18.7161, -29.3185),
     ),
-    "refine = 2": (
-        (0.090176, 0.203261, 0.43495, 0.610367, 0.641179),
-        (-0.5552, -3.4689, -9.2441, -18.1138, -27.6907),
-    ),
-    "refine = 3": (
-        (0.086746, 0.200073, 0.428393, 0.523967, 0.466071),
-        (-0.5515, -3.4007, -8.9874, -17.1155, -25.4558),
-    ),
+}
+
+# Last values by `refine` and time [s]: mean and spread of rate [-] and phase difference [deg].
+LAST_MESHES = {
+    1: {
+        0.02: ((0.0953, 0.0001), (-0.555, 0.0008)),
+        0.04: ((0.2106, 0.0004), (-3.477, 0.0013)),
+        0.06: ((0.4645, 0.0006), (-9.347, 0.0045)),
+        0.08: ((0.7183, 0.0010), (-18.72, 0.0111)),
+        0.1: ((0.7734, 0.0055), (-29.34, 0.0174)),
+    },
+    2: {
+        0.02: ((0.0882, 0.0012), (-0.557, 0.0030)),
+        0.04: ((0.2014, 0.0015), (-3.459, 0.0133)),
+        0.06: ((0.4375, 0.0013), (-9.208, 0.0655)),
+        0.08: ((0.6111, 0.0037), (-18.03, 0.132)),
+        0.1: ((0.6360, 0.0064), (-27.71, 0.140)),
+    },
+    3: {
+        0.02: ((0.0838, 0.0022), (-0.542, 0.0055)),
+        0.04: ((0.1924, 0.0043), (-3.307, 0.0536)),
+        0.06: ((0.3647, 0.0144), (-8.535, 0.201)),
+        0.08: ((0.4540, 0.0209), (-15.65, 0.577)),
+        0.1: ((0.4164, 0.0243), (-23.54, 0.847)),
+    },
 }
 
 
-def convergence_checks():
-    """Rate and phase difference at early times, and how they change with step and mesh."""
+def step_checks():
+    """Rate and phase difference at early times, and how they change with the step."""
     runs = {f"dt = {dt:g} s": early(1, dt) for dt in STEPS}
-    runs |= {f"refine = {n}": early(n, None) for n in REFINES[1:]}
     base = next(iter(runs))
     found = []
     for name, run in runs.items():
         change = "" if name == base else "change of "
-        against = "one run" if name == base else f"against {base}, refine = 1"
+        against = "one run" if name == base else f"against {base}"
         values = run.rate[1:], np.degrees(run.phase[1:])
         standard = runs[base].rate[1:], np.degrees(runs[base].phase[1:])
         for kind, unit, room, column in (("rate", "-", 0.02, 0), ("phase", "deg", 0.3, 1)):
@@ -390,7 +414,49 @@ def convergence_checks():
     return found
 
 
+def mesh_checks():
+    """Rate and phase difference at early times on each mesh: mean and spread over spin-ups.
+
+    The finer the film, the more shapes there are in which it can come to rest.
+    """
+    source = f"{MEMBERS} spin-ups of folded sails, {PERTURBATION:g} m apart"
+    found = []
+    for refine, last in LAST_MESHES.items():
+        runs = [early(refine, None, seed) for seed in range(MEMBERS)]
+        found += spread_checks(runs, last, source, f"refine = {refine}: ")
+    return found
+
+
 # --- ensemble ---
+
+
+def spread_checks(runs, last, source, title=""):
+    """Mean and spread of rate and phase difference [deg] over `runs`, at the times of `last`.
+
+    Parameters
+    ----------
+    runs : list of Deployment
+    last : dict
+        Last ((mean, spread) of the rate, (mean, spread) of the phase difference) by time [s].
+    source, title : str
+        Of the checks; what their names begin with.
+
+    Returns
+    -------
+    list of Check
+    """
+    rates, phases = np.array([r.rate for r in runs]), np.degrees([r.phase for r in runs])
+    found = []
+    for time, before in last.items():
+        row = runs[0].at(time)
+        values = ("rate", "-", rates[:, row]), ("phase", "deg", phases[:, row])
+        for (kind, unit, here), (mean, spread) in zip(values, before):
+            off = here.std(ddof=1)
+            rows = ("mean", here.mean(), mean, 3 * spread), ("spread", off, spread, 2 * spread)
+            for name, now, then, room in rows:
+                name = f"{title}{kind} at {time:g} s: {name}"
+                found.append(recorded(name, float(now), then, room, source, unit))
+    return found
 
 
 def growth_times(times, distances, within):
@@ -425,7 +491,8 @@ def draw(runs, distances, path):
     phase.set(ylabel="mean phase difference [deg]")
     growth.loglog(times[1:], distances[:, 1:].T, color="C0", linewidth=0.8)
     for limit in np.unique(GROWTHS):
-        growth.axhline(limit, color="0.5", linewidth=0.5, linestyle=":")
+        dotted = growth.axhline(limit, color="0.5", linewidth=0.8, linestyle=":")
+    growth.legend([dotted], ["between these exponentials are fitted"], frameon=False)
     growth.set(xlabel="time [s]", ylabel="distance from the first run [m]")
     for axes in (rate, phase, growth):
         axes.grid(alpha=0.3)
@@ -463,23 +530,13 @@ def ensemble_checks():
     power = float(np.polyfit(np.log(times[grows]), np.log(mean), 1)[0])
     name = f"distances grow with this power of time until {POWER_UNTIL:g} s"
     found.append(recorded(name, power, LAST_POWER, 0.3, "a straight line, both logarithmic"))
-    rates, phases = np.array([r.rate for r in runs]), np.degrees([r.phase for r in runs])
     source = f"{MEMBERS} runs, {PERTURBATION:g} m apart at the release"
-    for time, last in LAST_MEANS.items():
-        row = runs[0].at(time)
-        values = ("rate", "-", rates[:, row], last[0]), ("phase", "deg", phases[:, row], last[1])
-        for kind, unit, here, (mean, spread) in values:
-            off = here.std(ddof=1)
-            rows = ("mean", here.mean(), mean, 3 * spread), ("spread", off, spread, 2 * spread)
-            for name, now, before, room in rows:
-                title = f"{kind} at {time:g} s: {name}"
-                found.append(recorded(title, float(now), before, room, source, unit))
-    return found
+    return found + spread_checks(runs, LAST_MEANS, source)
 
 
 def checks(full):
     """Checks of the deployment: order in time; `full`, also ledgers, meshes and the ensemble."""
     found = order_checks(full)
     if full:
-        found += ledger_checks() + convergence_checks() + ensemble_checks()
+        found += ledger_checks() + step_checks() + mesh_checks() + ensemble_checks()
     return found

@@ -90,9 +90,14 @@ def draw(runs, swings, path):
         marker = {"color": line.get_color(), "marker": "sD"[alpha_crease < 1000]}
         label = line.get_label()
         marks.plot(*swings[alpha_crease, beta], linestyle="", label=label, **marker)
-    for members, sign in ((ensemble(), "k."), (others(), "k+")):
+    usual = SailParameters()
+    for members, key, sign in (
+        (ensemble(), (usual.alpha_crease, usual.beta), "k."),
+        (others(), OTHER, "k+"),
+    ):
         twins = np.transpose([lag_and_half_period(run.times, run.phase) for run in members])
-        marks.plot(*twins, sign, markersize=5, label="the same, 1e-9 m apart")
+        label = "{}, starts 1e-9 m apart".format(drawn[key].get_label())
+        marks.plot(*twins, sign, markersize=5, label=label)
     curves.set(xlabel="time [s]", ylabel="mean phase difference [deg]")
     marks.set(xlabel="largest lag [deg]", ylabel="half period [s]")
     curves.legend(frameon=False, fontsize=7)
