@@ -21,55 +21,59 @@ with plain_errors("workflow"):
 SNAKEFILE = Path(__file__).resolve().parent / "workflow" / "Snakefile"
 
 
-def config_files(options):
-    """Files of configuration that options of snakemake name."""
+def asked(options):
+    """What options of snakemake ask for: files of configuration, cores, the folder to work in.
+
+    Attributes of the result are `configfile` and `cores` (lists of str) and `directory` (Path).
+    """
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     parser.add_argument("--configfile", "--configfiles", nargs="*", action="extend", default=[])
-    return parser.parse_known_args(options)[0].configfile
-
-
-def check_cores(options):
-    """Raise ValueError if options ask snakemake for less than one core: it would wait for ever."""
-    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     parser.add_argument("-c", "--cores", "-j", "--jobs", nargs="?", action="append", default=[])
-    for number in parser.parse_known_args(options)[0].cores:
+    parser.add_argument("-d", "--directory", type=Path, default=Path())
+    return parser.parse_known_args(options)[0]
+
+
+def is_plan(options):
+    """Whether snakemake will only tell what it would do: -n, also as in -np, or --dry-run."""
+    return any(re.fullmatch(r"-p?n[a-z]*|--dry-?run", option) for option in options)
+
+
+def check_cores(cores):
+    """Raise ValueError if snakemake is asked for less than one core: it would wait for ever."""
+    for number in cores:
         if number and re.fullmatch(r"-?\d+", number) and int(number) < 1:
             raise ValueError(f"{number} cores or jobs: must be at least 1")
 
 
-def lock(options):
+def lock(directory):
     """Hold a lock in the folder in which snakemake works, until this process ends, however it does.
 
-    It stands for Snakemake's own, which a killed one leaves behind. Plans alone need none.
+    It stands for Snakemake's own, which a killed one leaves behind.
 
     Raises
     ------
     RuntimeError
         If another workflow runs there.
     """
-    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
-    parser.add_argument("-n", "--dry-run", "--dryrun", action="store_true")
-    parser.add_argument("-d", "--directory", type=Path, default=Path())
-    asked, _ = parser.parse_known_args(options)
-    if asked.dry_run:
-        return
-    folder = asked.directory / ".snakemake"
+    folder = directory / ".snakemake"
     folder.mkdir(parents=True, exist_ok=True)
     handle = os.open(folder / "workflow.lock", os.O_RDWR | os.O_CREAT)
     try:
         fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
-        raise RuntimeError(f"another workflow is running in {asked.directory.resolve()}") from None
+        raise RuntimeError(f"another workflow is running in {directory.resolve()}") from None
     os.set_inheritable(handle, True)  # snakemake holds it; it does not hand it on to its jobs
 
 
 def main():
     """Check, and become snakemake."""
     options = sys.argv[1:] or ["--cores", "all"]
-    check_cores(options)
-    for path in config_files(options):
+    wanted = asked(options)
+    check_cores(wanted.cores)
+    for path in wanted.configfile:
         check_file(path)
-    lock(options)
+    if not is_plan(options):
+        lock(wanted.directory)
     command = ["snakemake", "--snakefile", str(SNAKEFILE), "--nolock", "--rerun-incomplete"]
     os.execvp(command[0], command + options)
 

@@ -103,7 +103,6 @@ class TestCommandLines(BadDayTest):
             status = 2 if option == "--out" else 1
             self.ends(start("deploy.py", option, value), status, f"^deploy: .*{sentence}")
         self.ends(start("sweep.py", "run", "--out", ""), 2, "^sweep run: error: .*name a folder")
-        self.ends(start("ikaros.py", "--spin", "0"), 1, "^ikaros: omega = 0.0 rad/s must be > 0")
         self.ends(start("chart.py", "--steps", "0"), 2, "^chart: error: .*--steps: 0: must be")
         self.ends(start("parts.py", "--members", "1"), 2, "^parts: error: --members 1: must be")
         huge = scratch() / "huge.json"

@@ -116,13 +116,18 @@ BAD = {
 }
 
 
+def workflow(*options):
+    """Command line of `scripts/workflow.py` on one core, with further options."""
+    return ["/usr/bin/python3", str(ROOT / "scripts" / "workflow.py"), "--cores", "1", *options]
+
+
 class TestBadConfiguration(CommandTest):
     """Each is refused before any job."""
 
     def start(self, folder, *options):
         """`scripts/workflow.py` in a folder; it may run, not only plan."""
         return subprocess.run(
-            ["/usr/bin/python3", str(ROOT / "scripts" / "workflow.py"), "--cores", "1", *options],
+            workflow(*options),
             cwd=folder,
             env=yade_environment(),
             capture_output=True,
@@ -182,20 +187,21 @@ class TestBadConfiguration(CommandTest):
         folder = new_folder("texts")
         content = "grid: {beta: [1e1]}\noptions: {duration: 1e-2, no_pictures: true}\n"
         (folder / "mine.yaml").write_text(content)
-        done = self.start(folder, "--configfile", "mine.yaml", "--dry-run", "--printshellcmds")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        lines = [line for line in done.stdout.splitlines() if line.startswith("yade ")]
-        self.assertEqual(len(lines), 1, done.stdout)
-        self.assertIn("--duration=1e-2 --no-pictures --beta=1e1 ", lines[0])
+        for plan in (["--dry-run", "--printshellcmds"], ["-np"], ["-pn"]):
+            done = self.start(folder, "--configfile", "mine.yaml", *plan)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            lines = [line for line in done.stdout.splitlines() if line.startswith("yade ")]
+            self.assertEqual(len(lines), 1, done.stdout)
+            self.assertIn("--duration=1e-2 --no-pictures --beta=1e1 ", lines[0])
+            self.assertFalse((folder / ".snakemake" / "workflow.lock").exists())
 
 
-class TestKilled(CommandTest):
+class TestKilled(unittest.TestCase):
     ONE_CASE = re.sub("  (beta|alpha_crease): .*", r"  \1: [100]", TINY)
 
     def start(self, folder):
         return subprocess.Popen(
-            ["/usr/bin/python3", str(ROOT / "scripts" / "workflow.py"), "--cores", "1"]
-            + ["--configfile", "tiny.yaml"],
+            workflow("--configfile", "tiny.yaml"),
             cwd=folder,
             env=yade_environment(),
             stdout=subprocess.PIPE,
