@@ -408,23 +408,6 @@ def yade_environment():
     return {**os.environ, "PYTHONPATH": path, "MPLBACKEND": "Agg"}
 
 
-def children(pid):
-    """Ids of the processes that a process started."""
-    tasks = Path(f"/proc/{pid}/task").iterdir()
-    return [int(child) for task in tasks for child in (task / "children").read_text().split()]
-
-
-def kill(process):
-    """kill -9 of a process and of everything that it started, in whatever session."""
-    family = [process.pid]
-    for pid in family:
-        os.kill(pid, signal.SIGSTOP)  # so that it starts no more
-        family += children(pid)
-    for pid in family:
-        os.kill(pid, signal.SIGKILL)
-    process.communicate()
-
-
 def run_yade(script, *arguments, threads=1, folder=None):
     """Run `yade -n -x` on a script in `folder`; returns the CompletedProcess, output as text."""
     return subprocess.run(

@@ -11,12 +11,14 @@ from functools import lru_cache
 
 from membrane.sail import LAST_GOOD
 from membrane.unfinished import UNFINISHED
+from processes import Halt
 from support import ROOT, scratch, yade_environment
 
 SCRIPTS = ROOT / "scripts"
 PATTERN = SCRIPTS / "patterns" / "miura.fold"
 SMALL = ["--fold-lines", "3", "--inner-width", "0.15", "--spin-up-tolerance", "1e-3"]
 SHORT = [*SMALL, "--duration", "0.005", "--shapes-interval", "0.002", "--no-report"]
+ENDLESS = [*SMALL, "--duration", "20"]  # far longer than any test waits
 DIVERGES = [*SMALL, "--duration", "0.2", "--dt", "2.3e-5", "--force-time-step"]
 STOPPED, TERMINATED = 130, 143
 
@@ -194,8 +196,8 @@ class TestEarlierResults(BadDayTest):
     def test_control_c_leaves_them_whole(self):
         # In the spin-up, and in the run.
         for script, wanted, options in (
-            ("deploy.py", "spin-up", SMALL),
-            ("deploy.py", "deploying", SMALL),
+            ("deploy.py", "spin-up", ENDLESS),
+            ("deploy.py", "deploying", ENDLESS),
             ("sail.py", "deploying", [PATTERN, "--size", "0.05", "--duration", "20"]),
         ):
             process = start(script, *options, "--out", self.folder)
@@ -211,7 +213,7 @@ class TestEarlierResults(BadDayTest):
         for number in (signal.SIGTERM, signal.SIGHUP):
             if signal.getsignal(number) == signal.SIG_IGN:  # as under nohup
                 continue
-            process = start("deploy.py", *SMALL, "--out", self.folder)
+            process = start("deploy.py", *ENDLESS, "--out", self.folder)
             while "deploying" not in process.stderr.readline():
                 self.assertIsNone(process.poll())
             process.send_signal(number)
@@ -245,10 +247,13 @@ class TestEarlierResults(BadDayTest):
 
 class TestOutput(BadDayTest):
     def test_output_that_nobody_reads_is_a_sentence(self):
-        process = start("deploy.py", *SHORT, "--no-pictures", "--out", scratch() / "unread")
-        while "deploying" not in process.stderr.readline():
-            self.assertIsNone(process.poll())
+        halt = Halt(r"summary\.json")
+        options = [*SHORT, "--no-pictures", "--out", scratch() / "unread"]
+        process = start("deploy.py", *options, **halt.environment())
+        stopped = halt.wait(process)
+        halt.lift()
         process.stdout.close()
+        os.kill(stopped, signal.SIGCONT)
         self.ends(process, 1, "^deploy: nobody reads what it prints")
         self.assertTrue((scratch() / "unread" / "summary.json").exists())
 
@@ -256,7 +261,7 @@ class TestOutput(BadDayTest):
 class TestControlC(BadDayTest):
     def test_case_goes_on_later(self):
         folder = scratch() / "stopped_case"
-        process = start("case.py", *SMALL, "--out", folder)
+        process = start("case.py", *ENDLESS, "--out", folder)
         while "deploying" not in process.stderr.readline():
             self.assertIsNone(process.poll())
         process.send_signal(signal.SIGINT)

@@ -276,9 +276,11 @@ class TestExchange(FusedTest):
         while O.iter < 200:
             pass
         O.pause()
-        time.sleep(0.2)  # O.pause() does not wait for the step that is under way
+        steps = None
+        while steps != O.iter:  # O.pause() does not wait for the step that is under way
+            steps = O.iter
+            time.sleep(0.2)
         made.forces.writeBack()
-        steps = O.iter
         self.assertNotEqual(steps % 1000, 0)
         found = made.positions()
         np.testing.assert_array_equal(found, self.trajectory(steps)[-1])

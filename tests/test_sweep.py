@@ -10,10 +10,9 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 import unittest
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -25,7 +24,6 @@ from membrane.case_folder import (
     FAILED,
     KILLED,
     MISSING,
-    SAVED,
     look,
     part_of,
 )
@@ -33,7 +31,8 @@ from membrane.files import replacing, write_json
 from membrane.history import read_history
 from membrane.output import HistoryWriter
 from membrane.parameters import TABLE_2_CASES, SailParameters
-from support import ROOT, children, kill, long, scratch, yade_environment
+from processes import Halt, family, kill
+from support import ROOT, long, scratch, yade_environment
 from yade import utils
 
 sys.path.append(str(ROOT / "scripts"))
@@ -49,34 +48,25 @@ OFTEN = ["--checkpoint-every", "0"]
 WALL_TIME, BATCH = "wall_time.json", "batch"  # what may differ
 
 
-def start(command, **options):
-    """A process of its own group, so that it can be killed with all its children."""
+def start(command, halt):
+    """A process of its own session; `halt` is a Halt or None."""
     return subprocess.Popen(
         list(map(str, command)),
         cwd=scratch(),
-        env=yade_environment(),
+        env=halt.environment() if halt else yade_environment(),
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
         start_new_session=True,
-        **options,
     )
 
 
-def start_case(folder, *options):
-    return start(["yade", "-n", "-x", "-j1", CASE, "--out", folder, *options])
+def start_case(folder, *options, halt=None):
+    return start(["yade", "-n", "-x", "-j1", CASE, "--out", folder, *options], halt)
 
 
-def start_sweep(folder, *options):
-    return start(["/usr/bin/python3", SWEEP, "run", "--out", folder, *options])
-
-
-def kill_last_child(process):
-    """kill -9 of the youngest descendant of a process: of a sweep, the case that runs."""
-    pid = process.pid
-    while children(pid):
-        pid = children(pid)[-1]
-    os.kill(pid, signal.SIGKILL)
+def start_sweep(folder, *options, halt=None):
+    return start(["/usr/bin/python3", SWEEP, "run", "--out", folder, *options], halt)
 
 
 def tree(folder):
@@ -90,13 +80,6 @@ def tree(folder):
     }
 
 
-def saved(folder):
-    """How many checkpoints the unfinished cases in a folder have saved."""
-    # os.walk passes over folders that go away meanwhile.
-    found = [names for path, names, _ in os.walk(folder) if Path(path).name == SAVED]
-    return sum(int(name) + 1 for names in found for name in names if name.isdecimal())
-
-
 def rows(folder):
     """How many rows a history.csv has."""
     try:
@@ -105,33 +88,21 @@ def rows(folder):
         return 0
 
 
-class Killing:
-    """Runs a command, kills it after seeded amounts of work, and runs it to its end."""
-
-    def __init__(self, seed, folder, run):
-        self.random, self.folder, self.run = random.Random(seed), folder, run
-
-    def kill_after(self, most):
-        """Let it write up to `most` checkpoints; False if it came to its end before."""
-        process = self.run()
-        wanted = saved(self.folder) + self.random.randint(1, most)
-        while process.poll() is None and saved(self.folder) < wanted:
-            time.sleep(0.01)
-        time.sleep(self.random.uniform(0, 0.05))
-        if process.poll() is not None:
-            process.communicate()
-            return False
-        kill(process)
-        return True
-
-    def finish(self):
-        """Run it to its end; returns exit status and what it said."""
-        process = self.run()
-        said, _ = process.communicate()
-        return process.returncode, said
+def kill_at(number, run):
+    """Kill a command, which `run(halt=...)` starts, at the n-th change of an unfinished case."""
+    halt = Halt(r"\.part/", number)
+    process = run(halt=halt)
+    halt.wait(process)
+    kill(process)
 
 
 class SweepTest(unittest.TestCase):
+    def completes(self, process):
+        """It ends well; returns what it said."""
+        said, _ = process.communicate()
+        self.assertEqual(process.returncode, 0, said)
+        return said
+
     def same(self, expected, found):
         """Two folders hold the same files."""
         expected, found = tree(expected), tree(found)
@@ -163,31 +134,27 @@ class TestCase(SweepTest):
 
     def test_killed_case_that_diverges_leaves_the_same_files(self):
         folder = scratch() / "killed" / "diverged"
-        killing = Killing(
-            7, folder.parent, lambda: start_case(folder, *TOO_LONG, "--checkpoint-every", "0")
-        )
-        self.assertTrue(killing.kill_after(60))
-        self.assertFalse(folder.exists())
-        status, said = killing.finish()
-        self.assertEqual(status, 0, said)
+        run = partial(start_case, folder, *TOO_LONG, *OFTEN)
+        for number in random.Random(7).sample(range(400), 2):
+            kill_at(number, run)
+            self.assertFalse(folder.exists())
+        self.completes(run())
         self.same(diverged(), folder)
         self.assertFalse(part_of(folder).exists())
 
     def test_case_killed_while_tethers_lie_on_the_spool_leaves_the_same_files(self):
         options = [*SHORT, "--tip-mass", "5e-3", "--duration", "0.19"]
         quiet, folder = (scratch() / name / "case" for name in ("wound", "killed_wound"))
-        said, _ = start_case(quiet, *options, *OFTEN).communicate()
+        self.completes(start_case(quiet, *options, *OFTEN))
         history = read_history(quiet / "history.csv")
         first = int(np.argmax(history["contact_work"] != 0))
         self.assertTrue(0 < first < len(history["time"]) - 10)
-        process = start_case(folder, *options, *OFTEN)
-        while process.poll() is None and rows(part_of(folder)) < first + 5:
-            time.sleep(0.001)
+        halt = Halt("checkpoint/")
+        process = start_case(folder, *options, *OFTEN, halt=halt)
+        halt.wait_until(process, lambda: rows(part_of(folder)) >= first + 5)
         kill(process)
         self.assertFalse(folder.exists())
-        process = start_case(folder, *options, *OFTEN)
-        said, _ = process.communicate()
-        self.assertEqual(process.returncode, 0, said)
+        self.completes(start_case(folder, *options, *OFTEN))
         self.same(quiet, folder)
         self.assertEqual((folder / "report.html").exists(), report.TEMPLATE.is_file())
 
@@ -196,25 +163,21 @@ class TestCase(SweepTest):
         space = ["--hub-inertia", "1e-5", "--gravity", "0", "--air-density", "0"]
         options = [*SHORT, *space, "--duration", "0.03", "--no-pictures", *OFTEN]
         quiet, folder = scratch() / "quiet_hub", scratch() / "killed_hub" / "case"
-        start_case(quiet, *options).communicate()
+        self.completes(start_case(quiet, *options))
         spin = read_history(quiet / "history.csv")["hub_spin"]
         self.assertGreater(np.ptp(spin), 1e-3 * spin[0])
-        for reached in (lambda: saved(folder.parent) > 0, lambda: rows(part_of(folder)) > 5):
-            process = start_case(folder, *options)
-            while process.poll() is None and not reached():
-                time.sleep(0.001)
+        halt = Halt("checkpoint/", 8)
+        for reached in (lambda: rows(part_of(folder)) == 0, lambda: rows(part_of(folder)) > 5):
+            process = start_case(folder, *options, halt=halt)
+            halt.wait_until(process, reached)
             kill(process)
             self.assertFalse(folder.exists())
-        process = start_case(folder, *options)
-        said, _ = process.communicate()
-        self.assertEqual(process.returncode, 0, said)
+        self.completes(start_case(folder, *options))
         self.same(quiet, folder)
 
     def test_finished_case_is_left_alone_and_another_is_refused(self):
         before = {path: path.stat().st_mtime_ns for path in diverged().rglob("*")}
-        process = start_case(diverged(), *TOO_LONG)
-        process.communicate()
-        self.assertEqual(process.returncode, 0)
+        self.completes(start_case(diverged(), *TOO_LONG))
         process = start_case(diverged(), *TOO_LONG, "--beta", "3")
         said, _ = process.communicate()
         self.assertNotEqual(process.returncode, 0)
@@ -278,24 +241,30 @@ class TestSweep(SweepTest):
 
     def test_sweep_killed_at_random_moments_leaves_the_same_files(self):
         folder = scratch() / "killed_sweep"
-        killing = Killing(3, folder, lambda: start_sweep(folder, *self.OPTIONS))
-        kills = sum(killing.kill_after(8) for _ in range(2))
-        self.assertEqual(kills, 2)
-        status, said = killing.finish()
-        self.assertEqual(status, 0, said)
+        run = partial(start_sweep, folder, *self.OPTIONS)
+        for number in random.Random(3).sample(range(80), 2):
+            kill_at(number, run)
+        said = self.completes(run())
         self.assertRegex(said, "killed before: it was stopped from outside")
         self.same(self.folder, folder)
 
     def test_yade_batch_killed_alone_leaves_the_same_files(self):
         folder = scratch() / "killed_batch"
-        process = start_sweep(folder, *self.OPTIONS)
-        while process.poll() is None and saved(folder) < 3:
-            time.sleep(0.01)
-        (batch,) = children(process.pid)
-        os.kill(batch, signal.SIGKILL)  # its jobs run on
-        said, _ = process.communicate()
-        self.assertEqual(process.returncode, 0, said)
-        self.assertRegex(said, "it is still running.*; it runs again")
+        halt = Halt("checkpoint/")
+        process = start_sweep(folder, *self.OPTIONS, halt=halt)
+        halt.wait(process)
+        halt.lift()
+        batch, *jobs = family(process.pid)[1:]
+        os.kill(batch, signal.SIGKILL)  # its jobs go on
+        said = ""
+        while "it is still running" not in said:
+            line = process.stdout.readline()
+            self.assertNotEqual(line, "", f"it came to its end: {said}")
+            said += line
+        self.assertTrue(said.endswith("; it runs again\n"), said)
+        for job in jobs:
+            os.kill(job, signal.SIGCONT)
+        self.completes(process)
         self.same(self.folder, folder)
 
     def test_lost_case_runs_alone_and_again_if_it_is_killed(self):
@@ -304,12 +273,12 @@ class TestSweep(SweepTest):
         lost, kept = sorted((folder / "cases").iterdir())
         shutil.rmtree(lost)
         before = {path: path.stat().st_mtime_ns for path in kept.rglob("*")}
-        process = start_sweep(folder, *self.OPTIONS)
-        while process.poll() is None and saved(folder) < 3:
-            time.sleep(0.01)
-        kill_last_child(process)
-        said, _ = process.communicate()
-        self.assertEqual(process.returncode, 0, said)
+        halt = Halt("checkpoint/", 20)
+        process = start_sweep(folder, *self.OPTIONS, halt=halt)
+        case = halt.wait(process)
+        halt.lift()
+        os.kill(case, signal.SIGKILL)
+        said = self.completes(process)
         self.assertIn("1 of 2 cases are there already", said)
         self.assertRegex(said, f"{lost.name}: it was stopped from outside.*; it runs again")
         self.same(self.folder, folder)
@@ -336,9 +305,7 @@ class TestSweep(SweepTest):
         self.assertNotEqual(process.returncode, 0)
         self.assertRegex(said, "case: .*history.csv: .* is cut off; the case is damaged: remove ")
         shutil.rmtree(hurt)
-        process = start_sweep(folder, *self.OPTIONS)
-        said, _ = process.communicate()
-        self.assertEqual(process.returncode, 0, said)
+        self.completes(start_sweep(folder, *self.OPTIONS))
         self.same(self.folder, folder)
 
     def test_other_options_in_the_same_folder_are_refused(self):
@@ -723,14 +690,11 @@ class TestReferencePath(SweepTest):
     def test_law2_case_killed_leaves_the_same_files(self):
         quiet, folder = scratch() / "law2", scratch() / "killed_law2" / "case"
         options = [*SHORT, "--path", "law2", "--no-pictures", *OFTEN]
-        process = start_case(quiet, *options)
-        said, _ = process.communicate()
-        self.assertEqual(process.returncode, 0, said)
-        killing = Killing(11, folder.parent, lambda: start_case(folder, *options))
-        self.assertTrue(killing.kill_after(10))
-        self.assertTrue(killing.kill_after(10))
-        status, said = killing.finish()
-        self.assertEqual(status, 0, said)
+        self.completes(start_case(quiet, *options))
+        run = partial(start_case, folder, *options)
+        for number in random.Random(11).sample(range(60), 2):
+            kill_at(number, run)
+        self.completes(run())
         self.same(quiet, folder)
 
 

@@ -10,8 +10,9 @@ import sys
 import time
 import unittest
 
+from processes import Halt, kill
 from slurm import Slurm
-from support import ROOT, CommandTest, kill, long, scratch, yade_environment
+from support import ROOT, CommandTest, long, scratch, yade_environment
 
 sys.path.append(str(ROOT / "scripts"))
 FOLDER = ROOT / "scripts" / "workflow"
@@ -199,11 +200,11 @@ class TestBadConfiguration(CommandTest):
 class TestKilled(unittest.TestCase):
     ONE_CASE = re.sub("  (beta|alpha_crease): .*", r"  \1: [100]", TINY)
 
-    def start(self, folder):
+    def start(self, folder, halt=None):
         return subprocess.Popen(
             workflow("--configfile", "tiny.yaml"),
             cwd=folder,
-            env=yade_environment(),
+            env=halt.environment() if halt else yade_environment(),
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
@@ -228,9 +229,9 @@ class TestKilled(unittest.TestCase):
         expected = self.finish(quiet)
         self.assertGreater(len(expected), 5)
 
-        process = self.start(killed)
-        while process.poll() is None and not list(killed.glob("results/cases/*.part/begun.json")):
-            time.sleep(0.01)
+        halt = Halt(r"\.part/history\.csv")
+        process = self.start(killed, halt)
+        halt.wait(process)
         other = self.start(killed)
         said, _ = other.communicate()
         self.assertEqual(other.returncode, 1)
