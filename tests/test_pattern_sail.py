@@ -186,6 +186,16 @@ class TestCommand(CommandTest):
             (again / "history.csv").read_bytes(), (folder / "history.csv").read_bytes()
         )
 
+    def test_narrow_corner_is_refused_with_an_option_that_there_is(self):
+        path = scratch() / "narrow.fold"
+        corners = [[0, 0], [1, 0], [0.999, 0.003], [0, 0.3]]
+        edges = [[0, 1], [1, 2], [2, 3], [3, 0], [0, 2]]
+        content = {"frame_unit": "m", "vertices_coords": corners, "edges_vertices": edges}
+        path.write_text(json.dumps({**content, "edges_assignment": [*"BBBBM"]}))
+        done = run_yade(SCRIPT, path, "--size", 0.5, "--out", scratch() / "narrow")
+        self.ends_with_one_sentence(done, "sail", "the stiffness -", "by another --size")
+        self.assertNotIn("allowNegativeStiffness", done.stderr)
+
     def test_bad_days_end_with_one_sentence(self):
         sheet, mesh = MIURA.read_text(), gmsh_sheet().read_text()
         for name, text, *parts in (

@@ -268,13 +268,28 @@ class TestFoldedStart(unittest.TestCase):
         rest, now = (geometry.side_lengths(x, sides) for x in (mesh.nodes, mesh.start))
         np.testing.assert_allclose(now, rest, rtol=1e-12)
 
+    def test_without_letters_the_faces_tell_the_border(self):
+        told = self.strip(70, -35)
+        faces = tuple(np.array(face) for face in ([0, 1, 6, 7], [1, 2, 5, 6], [2, 3, 4, 5]))
+        given, found = (
+            mesh_pattern(pattern_of(replace(told, letters=letters, faces=faces)), 0.2)
+            for letters in (told.letters, None)
+        )
+        np.testing.assert_array_equal(found.start, given.start)
+        np.testing.assert_array_equal(found.creases, given.creases)
+        np.testing.assert_array_equal(found.crease_signs, given.crease_signs)
+        self.assertEqual(set(found.crease_signs), {geometry.MOUNTAIN, geometry.VALLEY})
+        with self.assertRaisesRegex(ValueError, "neither edges_assignment nor faces"):
+            pattern_of(replace(told, letters=None))
+
     def test_angles_that_do_not_go_together_are_refused(self):
         points = [(0, 0), (1, 0), (0, 1), (-1, 0), (0, -1)]
         edges = [(1, 2), (2, 3), (3, 4), (4, 1), (0, 1), (0, 2), (0, 3), (0, 4)]
         for bent, words in (((60, 0, 20, 0), "edge . would"), ((60, 50, 20, 30), "vertex . would")):
             angles = np.array([0.0, 0, 0, 0, *bent])
-            with self.assertRaisesRegex(ValueError, "do not go together: " + words):
+            with self.assertRaisesRegex(ValueError, "do not go together: " + words) as refused:
                 pattern_of(frame(points, edges, "BBBBVVVV", angles=angles))
+            self.assertNotIn("-0 ", str(refused.exception))
 
     def test_a_folded_form_alone_unrolls_to_its_pattern(self):
         pattern = pattern_of(self.strip(50, -110))

@@ -258,7 +258,12 @@ def _node_masses(sheet, p, tips):
 
 def build(sail, p):
     """Put a PatternSail into the (empty) scene, at its start and turning; returns MembraneScene."""
-    membrane = add_membrane(sail, sail.start, p)
+    try:
+        membrane = add_membrane(sail, sail.start, p)
+    except ValueError as error:
+        refused, remesh, _ = str(error).partition(": remesh, or set allowNegativeStiffness")
+        advice = "; mesh it otherwise, a crease pattern by another --size" if remesh else ""
+        raise ValueError(refused + advice) from None
     made = set_engines(membrane, p, driven=[membrane.bodyIds[i] for i in sail.hub])
     made.hold(sail.hub)
     return made

@@ -201,17 +201,26 @@ def _angles_of(frames, form, edges):
 
 
 def _edges_of(frame):
-    """Edges, their letters and the faces (maybe none) of a frame."""
+    """Edges, their letters and the faces (maybe none) of a frame.
+
+    Where the file gives no letters the faces tell the border; other edges are unassigned.
+    """
     faces = () if frame.faces is None else frame.faces
     edges, letters = frame.edges, frame.letters
-    if edges is None:
-        if not faces:
-            raise ValueError("the pattern has neither edges nor faces")
-        sides = np.concatenate([np.column_stack([f, np.roll(f, -1)]) for f in faces])
-        edges, shares = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
-        letters = np.where(shares == 1, "B", "U")
-    elif letters is None:
-        raise ValueError("the pattern has no edges_assignment: which edges fold is not said")
+    if edges is None and not faces:
+        raise ValueError("the pattern has neither edges nor faces")
+    if letters is None and not faces:
+        raise ValueError(
+            "the pattern has neither edges_assignment nor faces: which edges are its border is "
+            "not said"
+        )
+    if letters is None:
+        ends = np.concatenate([np.column_stack([f, np.roll(f, -1)]) for f in faces])
+        sides, shares = np.unique(np.sort(ends, axis=1), axis=0, return_counts=True)
+        edges = sides if edges is None else edges
+        border = set(map(tuple, sides[shares == 1].tolist()))
+        is_border = [tuple(side) in border for side in np.sort(edges, axis=1).tolist()]
+        letters = np.where(is_border, "B", "U")
     return edges, letters, faces
 
 
@@ -522,10 +531,15 @@ def fold_by_angles(pattern):
     e = int(np.argmax(wrong))
     if wrong[e] > LOOSE:
         raise ValueError(
-            f"the fold angles do not go together: edge {e} would be bent by {bent[e]:.4g} degrees, "
-            f"not by {pattern.angles[e]:g}"
+            f"the fold angles do not go together: edge {e} would be bent by {_plain(bent[e])} "
+            f"degrees, not by {_plain(pattern.angles[e])}"
         )
     return places
+
+
+def _plain(angle):
+    """An angle [deg] for a message, never -0."""
+    return f"{round(angle, 2) + 0.0:g}"
 
 
 def fold_angles_of(pattern, places, pairs):
