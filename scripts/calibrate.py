@@ -5,7 +5,8 @@ Run it by `scripts/run.sh calibrate TARGET [options]`; TARGET is a table with a 
 history.csv: `time` [s] since the release, and `phase_difference` [rad] or `deployment_rate` [-] or
 both. Options that are not listed here go to scripts/deploy.py, as `--omega 20`: the scene.
 
-About 40 runs of a few seconds. Writes calibration.json, calibration.png and runs.csv.
+About 40 runs of a few seconds; stopped and called again it goes on from those that it has. Writes
+calibration.json, calibration.png and runs.csv.
 """
 
 import argparse
@@ -30,6 +31,7 @@ with plain_errors("calibrate"):
 BOUNDS = {"alpha_crease": (10.0, 1000.0), "beta": (1.0, 100.0)}
 OURS = ("duration", "history-interval", "shapes-interval", "no-pictures")
 CLOSE_CORRELATION = 0.95
+KEPT = "unfinished_runs.jsonl"  # in the output folder until all is done
 
 
 def command_line():
@@ -180,6 +182,10 @@ def main():
     target = read_target(arguments.target, arguments.column or (), arguments.until)
     simulate = Deployments(names, target, [*scene, *held], tell)
     with new_results(arguments.out) as part:  # a folder that cannot be is refused before the runs
+        kept = arguments.out / KEPT
+        if simulate.keep(kept):
+            count = len(simulate.kept)
+            print(f"{count} runs are there already, in {kept}", file=sys.stderr)
         print("coarse search: 16 runs, and at most 8 more", file=sys.stderr)
         point = search(simulate, target, low, high, arguments.seed)
         print("surfaces: 18 runs each, one to three of them", file=sys.stderr)
@@ -194,6 +200,7 @@ def main():
         write_runs(part / "runs.csv", simulate, names, target)
         picture = part / "calibration.png"
         draw(picture, target, fit, surface, found, names, simulate.points)
+    kept.unlink(missing_ok=True)
     for name, about in content["parameters"].items():
         share = 100 * about["sigma_of_logarithm"]
         if about["identifiable"]:
@@ -212,5 +219,5 @@ def main():
     print(f"Look at:\n  {arguments.out}/calibration.png\n  {arguments.out}/calibration.json")
 
 
-with plain_errors("calibrate"):
+with plain_errors("calibrate", "stopped by Ctrl-C; called again it goes on"):
     main()

@@ -8,11 +8,13 @@ import sys
 import unittest
 
 import numpy as np
+from processes import Halt, kill
 from support import ROOT, long, run_yade, scratch, yade_environment
 
 sys.path.append(str(ROOT / "scripts"))
-target, search, surface = (
-    importlib.import_module(f"calibration.{name}") for name in ("target", "search", "surface")
+target, search, surface, kept_runs = (
+    importlib.import_module(f"calibration.{name}")
+    for name in ("target", "search", "surface", "kept_runs")
 )
 TIMES = np.linspace(0.0, 0.1, 101)  # [s]
 LOW, HIGH = np.log([10.0, 1.0]), np.log([1000.0, 100.0])
@@ -195,20 +197,26 @@ class TestSearch(unittest.TestCase):
             self.assertLessEqual(len(sail.points), search.FIRST + search.MOST)
 
 
+def command(*arguments):
+    """Command line of scripts/calibrate.py."""
+    return ["/usr/bin/python3", str(ROOT / "scripts" / "calibrate.py"), *map(str, arguments)]
+
+
 def calibrate(*arguments):
     """Run scripts/calibrate.py; returns the CompletedProcess."""
-    command = ["/usr/bin/python3", str(ROOT / "scripts" / "calibrate.py"), *map(str, arguments)]
     return subprocess.run(
-        command, cwd=scratch(), env=yade_environment(), capture_output=True, text=True
+        command(*arguments), cwd=scratch(), env=yade_environment(), capture_output=True, text=True
     )
 
 
-def noisy_run(alpha_crease, beta, seed):
-    """File with the noisy early curves of a run."""
-    folder = scratch() / f"true_{alpha_crease:g}_{beta:g}"
+def noisy_run(alpha_crease, beta, seed, *scene):
+    """File with the noisy early curves of a run; `scene` are further options."""
+    folder = scratch() / f"true_{alpha_crease:g}_{beta:g}_{len(scene)}"
     options = {"alpha-crease": alpha_crease, "beta": beta, "duration": 0.1, "shapes-interval": 0}
     flags = [f"--{name}={value}" for name, value in options.items()]
-    done = run_yade(ROOT / "scripts" / "deploy.py", "--out", folder, "--no-pictures", *flags)
+    done = run_yade(
+        ROOT / "scripts" / "deploy.py", "--out", folder, "--no-pictures", *flags, *scene
+    )
     if done.returncode:
         raise RuntimeError(done.stderr)
     table = np.genfromtxt(folder / "history.csv", delimiter=",", names=True)
@@ -218,6 +226,59 @@ def noisy_run(alpha_crease, beta, seed):
     rows = np.column_stack([table["time"], *columns])
     np.savetxt(path, rows, delimiter=",", header=",".join(["time", *NOISE]), comments="")
     return path
+
+
+class TestKeptRuns(unittest.TestCase):
+    ABOUT = {"names": ["beta"], "columns": ["phase_difference"], "times": [0.0, 0.1, 0.2]}
+    RUNS = {(1 / 3,): np.array([[0.1, -1e-300, 2 / 7]]), (0.5,): None}
+
+    def setUp(self):
+        self.path = scratch() / f"{self.id()}.jsonl"
+        kept = kept_runs.KeptRuns(self.path, self.ABOUT)
+        self.assertEqual(len(kept), 0)
+        self.assertFalse(self.path.exists())
+        for point, curves in self.RUNS.items():
+            kept.add(point, curves)
+
+    def found(self, **changes):
+        kept = kept_runs.KeptRuns(self.path, {**self.ABOUT, **changes})
+        return [point for point in self.RUNS if point in kept]
+
+    def test_runs_are_given_back_bit_for_bit(self):
+        kept = kept_runs.KeptRuns(self.path, self.ABOUT)
+        self.assertEqual(len(kept), 2)
+        for point, curves in self.RUNS.items():
+            self.assertIn(point, kept)
+            np.testing.assert_array_equal(kept[point], curves)
+
+    def test_a_line_that_is_cut_off_is_left_out_and_others_follow_it(self):
+        text = self.path.read_text()
+        self.path.write_text(text[: text.index("0.5") + 1])
+        kept = kept_runs.KeptRuns(self.path, self.ABOUT)
+        self.assertEqual(len(kept), 1)
+        kept.add((0.5,), None)
+        self.assertEqual(self.found(), list(self.RUNS))
+
+    def test_runs_of_another_scene_or_target_are_not_taken(self):
+        other = {**self.ABOUT, "times": [0.0, 0.1, 0.3]}
+        self.assertEqual(self.found(**other), [])
+        self.assertEqual(self.found(), list(self.RUNS))
+        kept_runs.KeptRuns(self.path, other).add((0.5,), None)
+        self.assertEqual(self.found(), [])
+        self.assertEqual(self.found(**other), [(0.5,)])
+
+    def test_a_file_of_something_else_is_not_taken(self):
+        first = self.path.read_text().splitlines(keepends=True)[0]
+        for text in (
+            "",
+            "{",
+            "[1]\n",
+            first + "7\n",
+            first + '[[1], "x"]\n',
+            first + "[[], null]\n",
+        ):
+            self.path.write_text(text)
+            self.assertEqual(self.found(), [], text)
 
 
 class TestCommand(unittest.TestCase):
@@ -245,6 +306,36 @@ class TestCommand(unittest.TestCase):
         path.write_text("time,deployment_rate\n" + rows)
         self.refused("thickness = -1.0 m", path, "--thickness=-1")
         self.refused("Not a directory", path, "--out", path / "below")
+        self.assertFalse((scratch() / "out" / "calibration").exists())
+
+
+@long
+class TestStopped(unittest.TestCase):
+    """A coarse sail, whose curves need not be good ones."""
+
+    COARSE = ["--fold-lines", "3", "--inner-width", "0.15", "--spin-up-tolerance", "1e-3"]
+
+    def test_stopped_calibration_goes_on_and_finds_the_same(self):
+        path = noisy_run(100.0, 30.0, 5, *self.COARSE)
+        quiet, folder = scratch() / "quiet_calibration", scratch() / "stopped_calibration"
+        done = calibrate(path, *self.COARSE, "--out", quiet)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        halt = Halt("unfinished_runs", 12)
+        process = subprocess.Popen(
+            command(path, *self.COARSE, "--out", folder),
+            cwd=scratch(),
+            env=halt.environment(),
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        halt.wait(process)
+        kill(process)
+        done = calibrate(path, *self.COARSE, "--out", folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stderr, r"(?m)^\d+ runs are there already")
+        for name in ("calibration.json", "runs.csv"):
+            self.assertEqual((folder / name).read_text(), (quiet / name).read_text())
+        self.assertFalse(list(folder.glob("unfinished*")))
 
 
 @long

@@ -5,11 +5,15 @@ import os
 import subprocess
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
+from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
+from membrane._load import VERSION
 from membrane.case_folder import LAST_GOOD
 from scipy.interpolate import CubicSpline
+
+from .kept_runs import KeptRuns
 
 DEPLOY = Path(__file__).resolve().parents[1] / "deploy.py"
 INTERVAL = 1e-3  # [s] between rows of a run's history
@@ -32,8 +36,22 @@ class Deployments:
 
     def __init__(self, names, target, options=(), tell=lambda values, curves: None):
         self.names, self.target, self.options, self.tell = names, target, list(options), tell
+        self.kept = None
         self.workers = len(os.sched_getaffinity(0))
         self._known = {}
+
+    def keep(self, path):
+        """Keep the runs in a file, and take from it those of an earlier call; returns how many."""
+        about = {
+            "membrane": VERSION,
+            "names": list(self.names),
+            "options": self.options,
+            "files": _files(self.options),
+            "columns": list(self.target.columns),
+            "times": self.target.times.tolist(),
+        }
+        self.kept = KeptRuns(path, about)
+        return len(self.kept)
 
     def __call__(self, points):
         """Curves of points (n, d), logarithms: a list of (C, S), None where the run diverged."""
@@ -61,7 +79,16 @@ class Deployments:
         return len(self._known)
 
     def _run(self, point):
-        values = np.exp(point)
+        """Curves of a point, of an earlier call if they are there."""
+        if self.kept is not None and point in self.kept:
+            return self.kept[point]
+        curves = self._deploy(np.exp(point))
+        if self.kept is not None:
+            self.kept.add(point, curves)
+        self.tell(np.exp(point), curves)
+        return curves
+
+    def _deploy(self, values):
         with tempfile.TemporaryDirectory(prefix="calibration-") as folder:
             done = subprocess.run(
                 ["yade", "-n", "-x", "-j1", str(DEPLOY), *self.options, *self._own(values, folder)],
@@ -72,9 +99,7 @@ class Deployments:
             if done.returncode and not diverged:
                 said = [line for line in done.stderr.splitlines() if line.startswith("deploy:")]
                 raise RuntimeError(said[-1] if said else f"a run ended by {done.returncode}")
-            curves = None if diverged else self._read(Path(folder) / "history.csv")
-        self.tell(values, curves)
-        return curves
+            return None if diverged else self._read(Path(folder) / "history.csv")
 
     def _own(self, values, folder):
         """Options that are not the caller's to choose."""
@@ -96,3 +121,9 @@ class Deployments:
         table = np.genfromtxt(path, delimiter=",", names=True)
         rows = np.array([table[name] for name in self.target.columns])
         return CubicSpline(table["time"], rows, axis=1)(self.target.times)
+
+
+def _files(options):
+    """Digests of the files that options name, as --parameters does."""
+    paths = [Path(word.partition("=")[2] or word) for word in options]
+    return {str(p): sha256(p.read_bytes()).hexdigest() for p in paths if p.is_file()}
