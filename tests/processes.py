@@ -41,7 +41,7 @@ def kill(process):
 
 
 class Halt:
-    """A place where a command and what it starts stop, each by itself, until they are told to go on.
+    """A place where a command and what it starts stop, each by itself, until told to go on.
 
     Parameters
     ----------
