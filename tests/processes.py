@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Processes that tests stop, go on with and kill, at places that do not depend on how fast they are."""
+"""Processes that tests stop, go on with and kill, at places that their speed does not change."""
 
 import os
 import signal
