@@ -13,7 +13,6 @@ import sys
 import unittest
 from dataclasses import replace
 from functools import lru_cache, partial
-from pathlib import Path
 
 import numpy as np
 from membrane import report, sail
