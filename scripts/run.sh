@@ -203,7 +203,8 @@ run_yade() {
     [[ $threads =~ ^[1-9][0-9]{0,4}$ ]] || die "-j takes the number of threads, at least 1, not '$threads'"
     ((threads <= 4 * $(nproc))) || die "-j $threads: too many threads for the $(nproc) cores of this machine"
     set_environment
-    exec yade "${no_display[@]}" -x -j "$threads" "$script" "${options[@]}"
+    # Ctrl-C waits until the script can end in one sentence; YADE itself would answer by a traceback.
+    exec env --block-signal=INT yade "${no_display[@]}" -x -j "$threads" "$script" "${options[@]}"
 }
 
 run_tests() {

@@ -22,6 +22,7 @@ def main():
     arguments = parser.parse_args()
     # Commands behind a shell's "&" begin with SIGINT ignored, and hand that on to those they start.
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])  # which scripts/run.sh blocks
     for module in arguments.modules:
         if not (Path(sys.path[0]) / f"{module.partition('.')[0]}.py").is_file():
             parser.error(f"there is no test module '{module}'")

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import unittest
 from functools import lru_cache
+from pathlib import Path
 
 from membrane.sail import LAST_GOOD
 from membrane.unfinished import UNFINISHED
@@ -259,6 +260,19 @@ class TestOutput(BadDayTest):
 
 
 class TestControlC(BadDayTest):
+    def test_while_yade_starts_it_is_a_sentence_too(self):
+        process = subprocess.Popen(
+            [SCRIPTS / "run.sh", "deploy", *ENDLESS, "--out", scratch() / "not_begun"],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        while b"bin/yade\0-n\0" not in Path(f"/proc/{process.pid}/cmdline").read_bytes():
+            self.assertIsNone(process.poll())
+        process.send_signal(signal.SIGINT)
+        self.ends(process, STOPPED, "^deploy: stopped by Ctrl-C")
+        self.assertFalse((scratch() / "not_begun").exists())
+
     def test_case_goes_on_later(self):
         folder = scratch() / "stopped_case"
         process = start("case.py", *ENDLESS, "--out", folder)

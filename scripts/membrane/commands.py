@@ -48,6 +48,7 @@ def plain_errors(command, stopped="stopped by Ctrl-C"):
     heard = [s for s in (signal.SIGTERM, signal.SIGHUP) if signal.getsignal(s) != signal.SIG_IGN]
     before = {number: signal.signal(number, _terminate) for number in heard}
     try:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])  # which scripts/run.sh blocks
         yield
     except KeyboardInterrupt:
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # the end is near, and must not be disturbed
