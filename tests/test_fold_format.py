@@ -62,6 +62,13 @@ class TestReading(unittest.TestCase):
         changed = {**PATCH, "edges_foldAngle": [None, None, 0, None, -90]}
         self.assertEqual(read_fold(written(changed)).frames[0].angles.tolist(), [0, 0, 0, 0, -90])
 
+    def test_empty_lists_about_edges_that_there_are_not_say_nothing(self):
+        edges = {"edges_assignment": [], "edges_foldAngle": []}
+        content = {name: v for name, v in PATCH.items() if not name.startswith("edges_")} | edges
+        (frame,) = read_fold(written(content)).frames
+        self.assertEqual((frame.edges, frame.letters, frame.angles), (None, None, None))
+        self.assertEqual(len(frame.faces), 2)
+
     def test_units_are_those_of_the_specification(self):
         self.assertAlmostEqual(UNITS["in"], 25.4 * UNITS["mm"])
         self.assertAlmostEqual(UNITS["pt"] * 72, UNITS["in"])

@@ -279,6 +279,8 @@ class TestFoldedStart(unittest.TestCase):
         np.testing.assert_array_equal(found.creases, given.creases)
         np.testing.assert_array_equal(found.crease_signs, given.crease_signs)
         self.assertEqual(set(found.crease_signs), {geometry.MOUNTAIN, geometry.VALLEY})
+        without = pattern_of(replace(told, edges=None, letters=None, angles=None, faces=faces))
+        self.assertEqual(sorted(without.letters), sorted("B" * 8 + "U" * 2))
         with self.assertRaisesRegex(ValueError, "neither edges_assignment nor faces"):
             pattern_of(replace(told, letters=None))
 

@@ -254,6 +254,8 @@ class _FrameReader:
         name = "edges_foldAngle" if "edges_foldAngle" in raw else "edges_foldAngles"  # 1.0's name
         angles = self._without_gaps(number, letters, get(name, _angles, size))
         self._check_directions(number, letters, angles)
+        if edges is None:  # empty lists, if any
+            letters = angles = None
         return FoldFrame(
             coords=coords,
             edges=edges,

@@ -214,7 +214,7 @@ def _edges_of(frame):
             "the pattern has neither edges_assignment nor faces: which edges are its border is "
             "not said"
         )
-    if letters is None:
+    if edges is None or letters is None:
         ends = np.concatenate([np.column_stack([f, np.roll(f, -1)]) for f in faces])
         sides, shares = np.unique(np.sort(ends, axis=1), axis=0, return_counts=True)
         edges = sides if edges is None else edges
@@ -556,7 +556,8 @@ def fold_angles_of(pattern, places, pairs):
     normals = np.array([_normal(places[face]) for face in pattern.faces])
     a, b = pattern.edges.T
     along = places[b] - places[a]
-    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    length = np.linalg.norm(along, axis=1, keepdims=True)
+    along /= np.where(length > 0, length, 1.0)  # edges of no face have no place
     left, right = normals[pairs[:, 0]], normals[pairs[:, 1]]
     # A valley lifts the right face: it turns about a -> b the other way than a screw.
     sine = -np.sum(along * np.cross(left, right), axis=1)
