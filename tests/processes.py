@@ -4,6 +4,7 @@
 import os
 import signal
 import time
+from contextlib import suppress
 from itertools import count
 from pathlib import Path
 
@@ -29,14 +30,20 @@ def family(pid):
     return found
 
 
+def send(pid, number):
+    """Send a signal to a process, if it has not ended meanwhile."""
+    with suppress(ProcessLookupError):
+        os.kill(pid, number)
+
+
 def kill(process):
     """kill -9 of a process and of everything that it started, in whatever session."""
     ids = [process.pid]
     for pid in ids:
-        os.kill(pid, signal.SIGSTOP)  # so that it starts no more
+        send(pid, signal.SIGSTOP)  # so that it starts no more
         ids += children(pid)
     for pid in ids:
-        os.kill(pid, signal.SIGKILL)
+        send(pid, signal.SIGKILL)
     process.communicate()
 
 

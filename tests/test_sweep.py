@@ -30,7 +30,7 @@ from membrane.files import replacing, write_json
 from membrane.history import read_history
 from membrane.output import HistoryWriter
 from membrane.parameters import TABLE_2_CASES, SailParameters
-from processes import Halt, family, kill
+from processes import Halt, family, kill, send
 from support import ROOT, long, scratch, yade_environment
 from yade import utils
 
@@ -262,7 +262,7 @@ class TestSweep(SweepTest):
             said += line
         self.assertTrue(said.endswith("; it runs again\n"), said)
         for job in jobs:
-            os.kill(job, signal.SIGCONT)
+            send(job, signal.SIGCONT)
         self.completes(process)
         self.same(self.folder, folder)
 
