@@ -183,8 +183,8 @@ def main():
     simulate = Deployments(names, target, [*scene, *held], tell)
     with new_results(arguments.out) as part:  # a folder that cannot be is refused before the runs
         kept = arguments.out / KEPT
-        if simulate.keep(kept):
-            count = len(simulate.kept)
+        count = simulate.keep(kept)
+        if count:
             print(f"{count} runs are there already, in {kept}", file=sys.stderr)
         print("coarse search: 16 runs, and at most 8 more", file=sys.stderr)
         point = search(simulate, target, low, high, arguments.seed)
