@@ -122,7 +122,7 @@ class Sheet:
 def interaction_loop(net, *laws):
     """The InteractionLoop of a membrane, with further `laws`."""
     return yade.InteractionLoop(
-        [membrane.Ig2_Sphere_Sphere_MembraneGeom()],
+        [membrane.Ig2_MembraneNode_MembraneNode_MembraneGeom()],
         [membrane.Ip2_MembraneMat_MembraneMat_MembranePhys(membrane=net)],
         [membrane.Law2_MembraneGeom_MembranePhys_Buckling(), *laws],
     )

@@ -6,7 +6,7 @@ import unittest
 
 import membrane
 import numpy as np
-from membrane import scene
+from membrane import _load, scene
 from support import O, SceneTest, Sheet, grid, interaction_loop
 from yade import system
 from yade import wrapper as yade
@@ -15,8 +15,9 @@ from yade.minieigenHP import Vector3
 BASES = {
     "MembraneMat": ("FrictMat", "ElastMat", "Material", "Serializable"),
     "Membrane": ("Serializable",),
+    "MembraneNode": ("Sphere", "Shape", "Serializable"),
     "MembraneGeom": ("ScGeom", "GenericSpheresContact", "IGeom"),
-    "Ig2_Sphere_Sphere_MembraneGeom": ("IGeomFunctor", "Functor"),
+    "Ig2_MembraneNode_MembraneNode_MembraneGeom": ("IGeomFunctor", "Functor"),
     "MembranePhys": ("NormShearPhys", "NormPhys", "IPhys"),
     "Ip2_MembraneMat_MembraneMat_MembranePhys": ("IPhysFunctor", "Functor"),
     "Law2_MembraneGeom_MembranePhys_Buckling": ("LawFunctor", "Functor"),
@@ -28,13 +29,15 @@ BASES = {
     "MembraneLedger": ("GlobalEngine", "Engine"),
     "MembraneTimeStepper": ("TimeStepper", "GlobalEngine", "Engine"),
     "MembraneWatch": ("GlobalEngine", "Engine"),
+    "MembraneFault": ("GlobalEngine", "Engine"),
     "GlExtra_Membrane": ("GlExtraDrawer", "Serializable"),
 }
 SETTINGS = {
     "MembraneMat": {"thickness": 1e-5, "young": 2e9, "label": "film"},
     "Membrane": {"alpha": 5.0, "cableStiffness": 30.0},
+    "MembraneNode": {"radius": 0.25},
     "MembraneGeom": {"length": 0.5, "penetrationDepth": 0.1},
-    "Ig2_Sphere_Sphere_MembraneGeom": {},
+    "Ig2_MembraneNode_MembraneNode_MembraneGeom": {},
     "MembranePhys": {"restLength": 0.5, "criticalLength": 0.4, "kn": 3.0},
     "Ip2_MembraneMat_MembraneMat_MembranePhys": {},
     "Law2_MembraneGeom_MembranePhys_Buckling": {},
@@ -46,6 +49,7 @@ SETTINGS = {
     "MembraneLedger": {"gravity": Vector3(0, 0, -1), "dead": True},
     "MembraneTimeStepper": {"fraction": 0.3, "active": False},
     "MembraneWatch": {"tolerance": 0.3, "period": 7},
+    "MembraneFault": {"dead": True},
     "GlExtra_Membrane": {"strainRange": 1e-4, "wire": True, "dead": True},
 }
 NUMBERS = ("Real", "Vector3r", "vector<Real>", "vector<Vector3r>")
@@ -54,7 +58,7 @@ NUMBERS = ("Real", "Vector3r", "vector<Real>", "vector<Vector3r>")
 class TestClasses(SceneTest):
     def each(self):
         """The classes by name."""
-        self.assertEqual(set(membrane.__all__), set(BASES))
+        self.assertEqual(set(membrane.__all__), {*BASES, *_load.ALIASES})
         for name in BASES:
             with self.subTest(name):
                 yield name, getattr(membrane, name)
@@ -112,7 +116,7 @@ class TestClasses(SceneTest):
                 self.assertTrue(O.isChildClassOf(name, base), base)
                 if base != "Serializable":
                     self.assertIn(name, system.childClasses(base))
-            self.assertFalse(O.isChildClassOf(name, "Shape"))
+            self.assertEqual(O.isChildClassOf(name, "Shape"), name == "MembraneNode")
 
     def test_attributes_can_be_read_only(self):
         net = membrane.Membrane(alpha=3.0)
@@ -124,7 +128,7 @@ class TestClasses(SceneTest):
     def test_dispatchers_find_the_functors(self):
         sheet = Sheet(*grid(1))
         loop = yade.InteractionLoop(
-            [membrane.Ig2_Sphere_Sphere_MembraneGeom(), yade.Ig2_Facet_Sphere_ScGeom()],
+            [membrane.Ig2_MembraneNode_MembraneNode_MembraneGeom(), yade.Ig2_Facet_Sphere_ScGeom()],
             [
                 membrane.Ip2_MembraneMat_MembraneMat_MembranePhys(membrane=sheet.membrane),
                 yade.Ip2_FrictMat_FrictMat_FrictPhys(),
@@ -135,7 +139,9 @@ class TestClasses(SceneTest):
             ],
         )
         geometry = loop.geomDispatcher.dispMatrix()
-        self.assertEqual(geometry["Sphere", "Sphere"], "Ig2_Sphere_Sphere_MembraneGeom")
+        self.assertEqual(
+            geometry["MembraneNode", "MembraneNode"], "Ig2_MembraneNode_MembraneNode_MembraneGeom"
+        )
         physics = loop.physDispatcher.dispMatrix()
         self.assertEqual(
             physics["MembraneMat", "MembraneMat"], "Ip2_MembraneMat_MembraneMat_MembranePhys"
@@ -178,6 +184,8 @@ class TestClasses(SceneTest):
             cables=cables,
             bodyIds=bodies.tolist(),
         )
+        for node, body in enumerate(bodies.tolist()):
+            O.bodies[body].shape = membrane.MembraneNode(membrane=net, node=node, radius=1e-3)
         O.engines = [interaction_loop(net)]
         from yade import utils
 

@@ -646,7 +646,7 @@ class TestErrors(FusedTest):
         for kind in (membrane.MembraneIntegrator, membrane.MembraneForceEngine):
             O.engines = [made.resetter, kind(membrane=made.membrane), made.forces]
             made.forces.beta = 0.0
-            with self.refused("another engine"):
+            with self.refused(f"two engines .* {kind.__name__} .* compute the forces of one membr"):
                 scene.advance(3)
 
     def test_interactions_that_would_pull_once_more(self):
@@ -847,7 +847,7 @@ class TestAlone(FusedTest):
             return []  # one loop goes through all interactions
         return [
             yade.InteractionLoop(
-                [membrane.Ig2_Sphere_Sphere_MembraneGeom()],
+                [membrane.Ig2_MembraneNode_MembraneNode_MembraneGeom()],
                 [functor],
                 [membrane.Law2_MembraneGeom_MembranePhys_Buckling()],
             )

@@ -184,11 +184,14 @@ class TestHelpers(SceneTest):
         exporter.exportInteractions(what={"kn": "i.phys.kn"})
         self.assertTrue(list(scratch().glob("vtk_*")) and list(scratch().glob("export*")))
 
-    def test_growing_particles_scales_what_yade_scales(self):
-        stiffness, mass = self.springs[0, 1][0], O.bodies[0].state.mass
+    def test_growing_particles_leaves_the_nodes_alone(self):
+        stiffness, body = self.springs[0, 1][0], O.bodies[0]
+        mass, radius = body.state.mass, body.shape.radius
+        O.bodies.append(utils.sphere((1, 1, 1), 0.1))
         utils.growParticles(1.1)
         grown = self.all_springs()[0, 1]
-        self.assertAlmostEqual(O.bodies[0].state.mass / mass, 1.1**3, delta=1e-9)
+        self.assertEqual((body.state.mass, body.shape.radius), (mass, radius))
+        self.assertAlmostEqual(O.bodies[-1].shape.radius, 0.11, delta=1e-12)
         self.assertTrue(np.all(np.isfinite(grown)))
         self.assertEqual(grown[1:], self.springs[0, 1][1:])
         self.assertGreater(grown[0], 0.5 * stiffness)

@@ -18,7 +18,7 @@ public:
         ((Real, omega, 0., , "Spin rate of the frame about +z [rad/s]."))
         ,
         ,
-        .def("energy", &CentrifugalField::energy, "Potential -1/2 sum m omega² r² in the present state [J].")
+        .def("energy", &Guarded<&CentrifugalField::energy>::call, "Potential -1/2 sum m omega² r² in the present state [J].")
     );
     // clang-format on
 };

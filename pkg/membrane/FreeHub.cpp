@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "FreeHub.hpp"
+#include "BodyAt.hpp"
 #include <cmath>
-#include <core/BodyContainer.hpp>
 #include <core/Omega.hpp>
-#include <core/Scene.hpp>
 
 namespace yade {
 
@@ -24,6 +23,11 @@ Vector3r chordVelocity(const Vector3r& place, Real angle, Real turn, Real dt) {
     return {-rate * middle[1], rate * middle[0], 0.};
 }
 
+[[noreturn]] void refuseNode(int node, int count) {
+    throw std::runtime_error("FreeHub: nodes: " + std::to_string(node) + " must be in 0 ... " +
+                             std::to_string(count - 1));
+}
+
 Real aboutZ(const Vector3r& x, const Vector3r& f) {
     return x[0] * f[1] - x[1] * f[0];
 }
@@ -37,9 +41,10 @@ void FreeHub::postLoad(FreeHub&) {
 
 void FreeHub::action() {
     if (!forces || !forces->membrane) throw std::runtime_error("FreeHub: forces is not set, or has no membrane");
-    if (forces->lastStep() != scene->iter)
+    if (!forces->hasRun(*scene))
         throw std::runtime_error("FreeHub: its MembraneForceEngine must run in the same step, before it");
-    if (places.size() != nodes.size()) begin();
+    checkNodes();
+    if (!hasPlaces()) begin();
     scene->forces.sync();
     torque = contactTorque = contacts();
     for (const int node : nodes) torque += aboutZ(forces->positionSeen(node), forces->totalForce(node));
@@ -58,19 +63,31 @@ void FreeHub::action() {
         spool->angularVelocity = spin;
     }
     lastStep_ = scene->iter;
+    lastScene_.set(*scene);
+}
+
+void FreeHub::checkNodes() const {
+    const int count = forces->nodeCount();
+    for (const int node : nodes) {
+        if (node < 0 || node >= count) refuseNode(node, count);
+        if (!isHeld(*forces->states()[node]))
+            throw std::runtime_error("FreeHub: node " + std::to_string(node) +
+                                     " must be held: set blockedDOFs='xyzXYZ' of its body");
+    }
 }
 
 /// Takes the nodes as they are.
 void FreeHub::begin() {
-    places.clear();
-    for (const int node : nodes) {
-        if (!isHeld(*forces->states()[node]))
-            throw std::runtime_error("FreeHub: node " + std::to_string(node) +
-                                     " must be held: set blockedDOFs='xyzXYZ' of its body");
-        places.push_back(turned(forces->positionSeen(node), -angle));
-    }
+    vector<int> sorted = nodes;
+    std::sort(sorted.begin(), sorted.end());
+    const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+    if (twice != sorted.end())
+        throw std::runtime_error("FreeHub: nodes: " + std::to_string(*twice) + " stands there twice");
     if (!(totalInertia() > 0.))
         throw std::runtime_error("FreeHub: inertia and nodes: the hub has no moment of inertia at all");
+    places.clear();
+    for (const int node : nodes) places.push_back(turned(forces->positionSeen(node), -angle));
+    placed = nodes;
 }
 
 /// Torque [N m] of contacts with the facets, whose forces are those on point masses: what turns a touching sphere in
@@ -79,7 +96,7 @@ Real FreeHub::contacts() const {
     if (!spool || spool->dead || scene->forces.lastReset < scene->iter) return 0.;
     Real sum = 0.;
     for (const int id : spool->ids)
-        if (const auto& facet = Body::byId(id, scene))
+        if (const shared_ptr<Body> facet = bodyAt(*scene, id))
             sum += aboutZ(facet->state->pos, scene->forces.getForce(id)) + scene->forces.getTorque(id)[2];
     for (const int id : spool->touching) sum += scene->forces.getTorque(id)[2];
     return sum;
@@ -87,7 +104,7 @@ Real FreeHub::contacts() const {
 
 Real FreeHub::totalInertia() const {
     Real sum = inertia;
-    const bool begun = places.size() == nodes.size();
+    const bool begun = hasPlaces();
     for (std::size_t k = 0; k < nodes.size(); ++k) {
         const State& state = stateOf(nodes[k]);
         // Of the first places, so that the inertia is the same in all steps.
@@ -99,12 +116,12 @@ Real FreeHub::totalInertia() const {
 
 const State& FreeHub::stateOf(int node) const {
     if (!forces || !forces->membrane) throw std::runtime_error("FreeHub: forces is not set, or has no membrane");
-    const auto& ids = forces->membrane->bodyIds;
-    if (node < 0 || node >= static_cast<int>(ids.size()))
-        throw std::runtime_error("FreeHub: nodes: " + std::to_string(node) + " must be in 0 ... " +
-                                 std::to_string(ids.size() - 1));
-    const auto& body = Body::byId(ids[node], Omega::instance().getScene());
-    if (!body) throw std::runtime_error("FreeHub: node " + std::to_string(node) + " has no body in the scene");
+    const Membrane& membrane = *forces->membrane;
+    const int count = static_cast<int>(membrane.bodyIds.size());
+    if (node < 0 || node >= count) refuseNode(node, count);
+    const shared_ptr<Body> body = bodyAt(*Omega::instance().getScene(), membrane.bodyIds[node]);
+    if (!body || !membrane.isNode(*body, node))
+        throw std::runtime_error("FreeHub: node " + std::to_string(node) + " has no body in the scene");
     return *body->state;
 }
 

@@ -12,7 +12,8 @@ public:
     void postLoad(FreeHub&);
 
     bool turns(int node) const { return std::find(nodes.begin(), nodes.end(), node) != nodes.end(); }
-    long lastStep() const { return lastStep_; }
+    /// Whether it has turned in the present step of a scene.
+    bool hasRun(const Scene& in) const { return lastStep_ == in.iter && lastScene_.is(&in); }
     Real totalInertia() const;
     /// Masses [kg] with which the nodes may count as free in the bound of the time step.
     void addTo(vector<Real>& masses) const;
@@ -37,18 +38,23 @@ public:
         ((Real, torque, 0., Attr::readonly, "On the hub about z in the last step [N m], that of contacts included."))
         ((Real, contactTorque, 0., Attr::readonly, "Of contacts with the facets [N m], in the last step."))
         ((vector<Vector3r>, places, , (Attr::readonly | Attr::hidden), "Places of the nodes [m] at angle 0."))
+        ((vector<int>, placed, , (Attr::readonly | Attr::hidden), "The nodes that have those places."))
         ,
         ,
-        .add_property("totalInertia", &FreeHub::totalInertia, "Moment of inertia about z [kg m²] of the hub with its nodes.")
-        .add_property("kinetic", &FreeHub::kinetic, "Kinetic energy [J] of the hub with its nodes, totalInertia spinBefore spin / 2.")
-        .add_property("angularMomentum", &FreeHub::angularMomentum, "About z [N m s], of the hub with its nodes.")
+        .add_property("totalInertia", &Guarded<&FreeHub::totalInertia>::call, "Moment of inertia about z [kg m²] of the hub with its nodes.")
+        .add_property("kinetic", &Guarded<&FreeHub::kinetic>::call, "Kinetic energy [J] of the hub with its nodes, totalInertia spinBefore spin / 2.")
+        .add_property("angularMomentum", &Guarded<&FreeHub::angularMomentum>::call, "About z [N m s], of the hub with its nodes.")
     );
     // clang-format on
 
 private:
     long lastStep_ = -1;
+    SceneMark lastScene_;
 
+    void checkNodes() const;
     void begin();
+    /// Whether the nodes have places, and not others that stood in `nodes` before.
+    bool hasPlaces() const { return placed == nodes && places.size() == nodes.size(); }
     const State& stateOf(int node) const;
     Real contacts() const;
 };

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "Law2_MembraneGeom_MembranePhys_Buckling.hpp"
-#include "Faults.hpp"
+#include "BodyAt.hpp"
+#include "Exactly.hpp"
+#include "MembraneFault.hpp"
+#include "MembraneForceEngine.hpp"
 #include "mechanics/SideForce.hpp"
 #include <cmath>
 #include <core/EnergyTracker.hpp>
@@ -9,6 +12,7 @@
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
 #include <mutex>
+#include <pkg/dem/NewtonIntegrator.hpp>
 
 namespace yade {
 
@@ -26,30 +30,52 @@ void findEnergy(EnergyTracker& energies, const string& name, int& index) {
     __atomic_store_n(&index, found, __ATOMIC_RELEASE);
 }
 
+/// Whether the nodes of a side move and no engine of their membrane looks at what they do.
+bool movesUnwatched(const Interaction& link, const Scene& scene) {
+    const shared_ptr<Body> body = bodyAt(scene, link.getId1());
+    const MembraneNode* const node = body ? exactly<MembraneNode>(body->shape) : nullptr;
+    bool moves = false;
+    for (const auto& engine : scene.engines) {
+        if (engine->dead) continue;
+        const auto* const forces = dynamic_cast<const MembraneForceEngine*>(engine.get());
+        if (forces && node && forces->membrane == node->membrane) return false;
+        moves = moves || dynamic_cast<const NewtonIntegrator*>(engine.get());
+    }
+    return moves;
+}
+
 } // namespace
 
 bool Law2_MembraneGeom_MembranePhys_Buckling::go(shared_ptr<IGeom>& geomBase, shared_ptr<IPhys>& physBase,
                                                  Interaction* link) {
-    const auto& geom = *static_cast<MembraneGeom*>(geomBase.get());
-    auto& phys = *static_cast<MembranePhys*>(physBase.get());
-
     const auto fault = [&](const std::string& what) {
-        faults::record(scene, "Membrane: bodies #" + std::to_string(link->getId1()) + " and #" +
-                                  std::to_string(link->getId2()) + " " + what);
+        MembraneFault::note(*scene, "Membrane: bodies #" + std::to_string(link->getId1()) + " and #" +
+                                        std::to_string(link->getId2()) + " " + what);
         return true;
     };
-    if (!(phys.restLength > 0.)) return fault("interact but are no side of the membrane");
-    if (!std::isfinite(geom.length)) return fault("are " + std::to_string(geom.length) + " m apart");
+    MembraneGeom* const geom = exactly<MembraneGeom>(geomBase);
+    MembranePhys* const phys = exactly<MembranePhys>(physBase);
+    if (!geom || !phys)
+        return fault("interact by a " + (geomBase ? geomBase->getClassName() : "missing geom") + " and a " +
+                     (physBase ? physBase->getClassName() : "missing phys") +
+                     ", not by a MembraneGeom and a MembranePhys");
+    if (!(phys->restLength > 0.)) return fault("interact but are no side of the membrane");
+    if (!std::isfinite(geom->length)) return fault("are " + std::to_string(geom->length) + " m apart");
+    if (phys->computed >= 0 && phys->computed == scene->iter - 1 && phys->checked != phys->computed &&
+        movesUnwatched(*link, *scene))
+        return fault("are a side that moves without a MembraneForceEngine of its membrane: put one into O.engines, "
+                     "after InteractionLoop, and let it not be dead");
 
-    const Real tension = ::membrane::sideTension(geom.length, phys.kn, phys.restLength, phys.criticalLength);
-    phys.normalForce = -tension * geom.normal;
-    addForce(link->getId1(), -phys.normalForce, scene);
-    addForce(link->getId2(), phys.normalForce, scene);
+    const Real tension = ::membrane::sideTension(geom->length, phys->kn, phys->restLength, phys->criticalLength);
+    phys->normalForce = -tension * geom->normal;
+    phys->computed = scene->iter;
+    addForce(link->getId1(), -phys->normalForce, scene);
+    addForce(link->getId2(), phys->normalForce, scene);
 
     if (scene->trackEnergy) {
         const string name = "membraneElastic";
         findEnergy(*scene->energy, name, energyIndex);
-        scene->energy->add(::membrane::sideEnergy(geom.length, phys.kn, phys.restLength, phys.criticalLength), name,
+        scene->energy->add(::membrane::sideEnergy(geom->length, phys->kn, phys->restLength, phys->criticalLength), name,
                            energyIndex, /*reset in every step*/ true);
     }
     return true;
@@ -59,8 +85,8 @@ Real Law2_MembraneGeom_MembranePhys_Buckling::elasticEnergy() const {
     Real energy = 0.;
     for (const auto& link : *Omega::instance().getScene()->interactions) {
         if (!link->isReal()) continue;
-        const auto* geom = dynamic_cast<MembraneGeom*>(link->geom.get());
-        const auto* phys = dynamic_cast<MembranePhys*>(link->phys.get());
+        const auto* geom = exactly<MembraneGeom>(link->geom);
+        const auto* phys = exactly<MembranePhys>(link->phys);
         if (geom && phys)
             energy += ::membrane::sideEnergy(geom->length, phys->kn, phys->restLength, phys->criticalLength);
     }

@@ -18,7 +18,7 @@ public:
         ((int, energyIndex, -1, (Attr::hidden | Attr::noSave), "Where the energy is kept in O.energy."))
         ,
         ,
-        .def("elasticEnergy", &Law2_MembraneGeom_MembranePhys_Buckling::elasticEnergy, "Strain energy [J] of all sides in the scene.")
+        .def("elasticEnergy", &Guarded<&Law2_MembraneGeom_MembranePhys_Buckling::elasticEnergy>::call, "Strain energy [J] of all sides in the scene.")
     );
     // clang-format on
 };

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "Membrane.hpp"
+#include "BodyAt.hpp"
 #include "Buffers.hpp"
 #include "MembraneGeom.hpp"
+#include "MembraneNode.hpp"
 #include "MembranePhys.hpp"
 #include "mechanics/SideForce.hpp"
 #include <algorithm>
 #include <cmath>
-#include <core/BodyContainer.hpp>
 #include <core/Interaction.hpp>
 #include <core/InteractionContainer.hpp>
 #include <core/Omega.hpp>
-#include <core/Scene.hpp>
 #include <numeric>
-#include <pkg/common/Sphere.hpp>
 
 namespace yade {
 
@@ -49,6 +48,9 @@ void Membrane::pyHandleCustomCtorArgs(boost::python::tuple&, boost::python::dict
 }
 
 void Membrane::postLoad(Membrane&) {
+    const StepGuard::Look look;
+    ++version_;
+    rest_ = ::membrane::RestState();                                  // what follows may refuse the attributes
     if (nodes.empty() && triangles.empty() && cables.empty()) return; // default constructed: filled in later by loading
     if (!material && !triangles.empty())
         throw std::invalid_argument("Membrane: material is missing; give a MembraneMat");
@@ -95,6 +97,7 @@ void Membrane::indexBodies() {
 
 int Membrane::nodeOf(Body::id_t body) const {
     if (nodesByBody_.empty()) {
+        if (bodyIds.empty() || body < bodyIds.front() || body > bodyIds.back()) return -1; // most are others'
         const auto found = std::lower_bound(bodyIds.begin(), bodyIds.end(), body);
         return found != bodyIds.end() && *found == body ? static_cast<int>(found - bodyIds.begin()) : -1;
     }
@@ -107,22 +110,39 @@ int Membrane::sideBetween(Body::id_t a, Body::id_t b) const {
     return rest_.sideBetween(nodeOf(a), nodeOf(b));
 }
 
-vector<shared_ptr<State>> Membrane::states(Scene& scene) const {
+bool Membrane::isNode(const Body& body, int node) const {
+    const auto* const shape = dynamic_cast<const MembraneNode*>(body.shape.get());
+    return shape && body.state && shape->membrane.get() == this && shape->node == node;
+}
+
+int Membrane::nodeWithoutBody(const Scene& scene) const {
+    for (std::size_t i = 0; i < bodyIds.size(); ++i) {
+        const shared_ptr<Body> body = bodyAt(scene, bodyIds[i]);
+        if (!body || !isNode(*body, static_cast<int>(i))) return static_cast<int>(i);
+    }
+    return -1;
+}
+
+vector<shared_ptr<Body>> Membrane::bodies(const Scene& scene) const {
     if (bodyIds.size() != nodes.size() || nodes.empty())
         throw std::runtime_error("Membrane: its nodes have no bodies yet; call addBodies() first");
+    if (const int lost = nodeWithoutBody(scene); lost >= 0)
+        throw std::runtime_error("Membrane: body #" + std::to_string(bodyIds[lost]) + " of node " +
+                                 std::to_string(lost) + " is not in the scene");
+    vector<shared_ptr<Body>> found;
+    found.reserve(bodyIds.size());
+    for (const int id : bodyIds) found.push_back((*scene.bodies)[id]);
+    return found;
+}
+
+vector<shared_ptr<State>> Membrane::states(const Scene& scene) const {
     vector<shared_ptr<State>> states;
     states.reserve(bodyIds.size());
-    for (std::size_t i = 0; i < bodyIds.size(); ++i) {
-        const shared_ptr<Body> body = Body::byId(bodyIds[i], &scene);
-        if (!body)
-            throw std::runtime_error("Membrane: body #" + std::to_string(bodyIds[i]) + " of node " + std::to_string(i) +
-                                     " is not in the scene");
-        states.push_back(body->state);
-    }
+    for (const auto& body : bodies(scene)) states.push_back(body->state);
     return states;
 }
 
-::membrane::Points Membrane::positions(Scene& scene, const vector<Vector3r>& given) const {
+::membrane::Points Membrane::positions(const Scene& scene, const vector<Vector3r>& given) const {
     if (given.size() == nodes.size()) return given;
     if (!given.empty())
         throw std::invalid_argument("Membrane: positions has " + std::to_string(given.size()) +
@@ -152,12 +172,15 @@ vector<int> Membrane::addBodies(const vector<Vector3r>& at, Real radius) {
             throw std::invalid_argument("Membrane.addBodies: positions[" + std::to_string(i) + "] must be finite");
 
     if (material->id < 0) scene->addMaterial(material);
+    const auto self = boost::static_pointer_cast<Membrane>(shared_from_this());
     bodyIds.reserve(nodes.size());
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const shared_ptr<Body> body(new Body);
-        const shared_ptr<Sphere> sphere(new Sphere);
-        sphere->radius = radius;
-        body->shape = sphere;
+        const shared_ptr<MembraneNode> node(new MembraneNode);
+        node->radius = radius;
+        node->membrane = self;
+        node->node = static_cast<int>(i);
+        body->shape = node;
         body->material = material;
         body->setBounded(false);
         body->state->pos = body->state->refPos = place[i];
@@ -193,7 +216,9 @@ void Membrane::addInteractions() {
 
 void Membrane::removeInteractions() {
     if (bodyIds.empty()) return;
-    InteractionContainer& interactions = *Omega::instance().getScene()->interactions;
+    const shared_ptr<Scene> scene = Omega::instance().getScene();
+    bodies(*scene); // refuses those of another scene
+    InteractionContainer& interactions = *scene->interactions;
     for (const ::membrane::Side& side : rest_.sides) {
         const shared_ptr<Interaction>& link = interactions.find(bodyIds[side.a], bodyIds[side.b]);
         if (link && dynamic_cast<MembranePhys*>(link->phys.get()))
@@ -202,10 +227,13 @@ void Membrane::removeInteractions() {
 }
 
 bool Membrane::hasInteractions() const {
-    if (bodyIds.empty() || rest_.sides.empty()) return false;
-    const ::membrane::Side& side = rest_.sides.front();
-    const auto& link = Omega::instance().getScene()->interactions->find(bodyIds[side.a], bodyIds[side.b]);
-    return link && dynamic_cast<MembranePhys*>(link->phys.get());
+    const shared_ptr<Scene> scene = Omega::instance().getScene();
+    const auto isThere = [&](const ::membrane::Side& side) {
+        const auto& link = scene->interactions->find(bodyIds[side.a], bodyIds[side.b]);
+        return link && dynamic_cast<MembranePhys*>(link->phys.get());
+    };
+    return !bodyIds.empty() && nodeWithoutBody(*scene) < 0 &&
+           std::any_of(rest_.sides.begin(), rest_.sides.end(), isThere);
 }
 
 Real Membrane::elasticEnergy() const {

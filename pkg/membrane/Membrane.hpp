@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "MembraneMat.hpp"
+#include "StepGuard.hpp"
 #include "mechanics/RestState.hpp"
 #include <core/Body.hpp>
 #include <core/State.hpp>
@@ -16,14 +17,21 @@ public:
     void pyHandleCustomCtorArgs(boost::python::tuple& args, boost::python::dict& keywords) override;
 
     const ::membrane::RestState& rest() const { return rest_; }
+    /// Changes whenever rest() does.
+    long version() const { return version_; }
     /// Throws std::runtime_error if the material is no longer the one from which the rest state was computed.
     void checkUnchanged() const;
+    /// Node whose body has this id; -1 if none has.
+    int nodeOf(Body::id_t body) const;
     /// Index in rest().sides of the side between two bodies; -1 if there is none.
     int sideBetween(Body::id_t a, Body::id_t b) const;
-    /// States of the nodes' bodies in the scene. Throws std::runtime_error naming a node without a body.
-    vector<shared_ptr<State>> states(Scene& scene) const;
+    /// The nodes' bodies in the scene. Throws std::runtime_error naming a node without a body there.
+    vector<shared_ptr<Body>> bodies(const Scene& scene) const;
+    vector<shared_ptr<State>> states(const Scene& scene) const;
+    /// Whether a body is that of a node of this membrane, and not another scene's of the same id.
+    bool isNode(const Body& body, int node) const;
     /// `given` if it has a point for each node, the present positions in the scene if it is empty [m].
-    ::membrane::Points positions(Scene& scene, const vector<Vector3r>& given = {}) const;
+    ::membrane::Points positions(const Scene& scene, const vector<Vector3r>& given = {}) const;
 
     vector<int> addBodies(const vector<Vector3r>& at, Real radius);
     vector<int> addBodiesPy(const boost::python::object& at, Real radius);
@@ -69,29 +77,30 @@ public:
         .add_property("criticalLengths", &Membrane::criticalLengths, "Length l_cr of each side below which it is buckled [m], paper equation (6).")
         .add_property("masses", &Membrane::masses, "Mass of each node [kg], paper equation (4), with cables and point masses.")
         .add_property("area", &Membrane::area, "Area of the film [m²].")
-        .def("addBodies", &Membrane::addBodiesPy, (boost::python::arg("positions") = vector<Vector3r>(), boost::python::arg("radius") = 1e-3),
+        .def("addBodies", &Guarded<&Membrane::addBodiesPy>::call, (boost::python::arg("positions") = boost::python::list(), boost::python::arg("radius") = 1e-3),
             "Add one sphere a node to the scene, without bound and with blocked rotations; returns the ids.\n\n"
             ":param positions: where to put the nodes [m], N points; default: the rest positions\n"
             ":param radius: of the spheres [m], > 0; it counts only for drawing and for contacts of bounded bodies")
-        .def("addInteractions", &Membrane::addInteractions, "Add one interaction a side, real from the start. Call addBodies first.")
-        .def("removeInteractions", &Membrane::removeInteractions, "Remove the interactions of the sides, if there are any.")
-        .add_property("hasInteractions", &Membrane::hasInteractions, "Whether the sides are interactions of the scene.")
-        .def("elasticEnergy", &Membrane::elasticEnergy, "Strain energy of all sides in the scene's present state [J].")
-        .def("lengths", &Membrane::lengths, (boost::python::arg("positions") = boost::python::list()), "Length of each side [m] at given positions of "
+        .def("addInteractions", &Guarded<&Membrane::addInteractions>::call, "Add one interaction a side, real from the start. Call addBodies first.")
+        .def("removeInteractions", &Guarded<&Membrane::removeInteractions>::call, "Remove the interactions of the sides, if there are any.")
+        .add_property("hasInteractions", &Guarded<&Membrane::hasInteractions>::call, "Whether the sides are interactions of the scene.")
+        .def("elasticEnergy", &Guarded<&Membrane::elasticEnergy>::call, "Strain energy of all sides in the scene's present state [J].")
+        .def("lengths", &Guarded<&Membrane::lengths>::call, (boost::python::arg("positions") = boost::python::list()), "Length of each side [m] at given positions of "
             "the N nodes [m]; default: the present ones.")
-        .def("tensions", &Membrane::tensions, (boost::python::arg("positions") = boost::python::list()), "Elastic tension of each side [N], negative in "
+        .def("tensions", &Guarded<&Membrane::tensions>::call, (boost::python::arg("positions") = boost::python::list()), "Elastic tension of each side [N], negative in "
             "compression, at given positions of the N nodes [m]; default: the present ones.")
     );
     // clang-format on
 
 private:
     ::membrane::RestState rest_;
+    long version_ = 0;
     Real young_ = 0., poisson_ = 0., thickness_ = 0.; ///< with which rest_ was computed
     vector<int> nodesByBody_; ///< nodes in the order of their bodies' ids; empty if that is their own order
 
     void indexBodies();
-    /// Node of a body; -1 if it has none.
-    int nodeOf(Body::id_t body) const;
+    /// The first node whose body is not in the scene; -1: all are there.
+    int nodeWithoutBody(const Scene& scene) const;
 };
 REGISTER_SERIALIZABLE(Membrane);
 

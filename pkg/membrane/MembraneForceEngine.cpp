@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneForceEngine.hpp"
+#include "BodyAt.hpp"
 #include "Buffers.hpp"
-#include "Faults.hpp"
+#include "Exactly.hpp"
 #include "FreeHub.hpp"
+#include "MembraneFault.hpp"
 #include "MembraneLedger.hpp"
 #include "TimeStepState.hpp"
 #include "mechanics/CriticalTimeStep.hpp"
-#include "mechanics/Damping.hpp"
 #include <cmath>
+#include <core/InteractionContainer.hpp>
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
 #include <lib/high-precision/Constants.hpp>
 #include <numeric>
 #include <sstream>
-#include <typeinfo>
 
 namespace yade {
 
@@ -50,6 +51,7 @@ Vector3r centredVelocity(const State& state, const Vector3r& seenPosition, const
 }
 
 void MembraneForceEngine::postLoad(MembraneForceEngine&) {
+    const StepGuard::Look look;
     requireNotNegative("beta", beta);
     requireNotNegative("gamma", gamma);
     requireNotNegative("zeta", zeta);
@@ -58,7 +60,27 @@ void MembraneForceEngine::postLoad(MembraneForceEngine&) {
     if (creaseLaw != "paper" && creaseLaw != "conservative")
         refuse("creaseLaw", creaseLaw, "'paper' or 'conservative'");
     if (timeStepCheckPeriod <= 0) refuse("timeStepCheckPeriod", timeStepCheckPeriod, "> 0");
-    preparedFor_ = nullptr;
+    preparedFor_.clear();
+    if (membrane != preparedMembrane_) forget();
+}
+
+/// What was computed for another membrane.
+void MembraneForceEngine::forget() {
+    preparedMembrane_.reset();
+    lastStep_ = -1;
+    madeSums_ = ::membrane::Sums::none;
+    bodies_.clear();
+    states_.clear();
+    allNodes_.clear();
+    contacts_.clear();
+    left_.clear();
+    interacting_.clear();
+}
+
+void MembraneForceEngine::preSave(MembraneForceEngine&) {
+    const StepGuard::Look look;
+    StepGuard::holdForSave();
+    fetch();
 }
 
 ::membrane::CreaseLaw MembraneForceEngine::law() const {
@@ -72,60 +94,111 @@ void MembraneForceEngine::postLoad(MembraneForceEngine&) {
 }
 
 void MembraneForceEngine::action() {
-    const auto guarded = guard_.step();
-    faults::raise(scene);
-    if (preparedFor_ != scene) {
-        prepare(*scene);
-        checkedStep_ = -1.;
-        preparedFor_ = scene;
+    const StepGuard::Step guarded;
+    try {
+        step();
+    } catch (...) {
+        writeBack();
+        throw;
     }
+}
+
+void MembraneForceEngine::step() {
+    MembraneFault::raise(*scene);
+    if (!isPreparedFor(*scene) || !membrane || preparedVersion_ != membrane->version()) {
+        try {
+            prepare(*scene);
+        } catch (...) {
+            forget(); // half of it was done
+            throw;
+        }
+        checkedStep_ = -1.;
+        checkedContacts_ = 0.;
+        preparedFor_.set(*scene);
+        preparedMembrane_ = membrane;
+        preparedVersion_ = membrane->version();
+    }
+    surroundings_.check(*this, *scene, takesInteractions(), left_);
     gather();
+    if (takesInteractions()) checkSides();
+    findContacts();
     if (scene->dt != checkedStep_ || scene->iter % timeStepCheckPeriod == 0) checkTimeStep();
     computeForces();
     lastStep_ = scene->iter;
 }
 
 void MembraneForceEngine::prepare(Scene& now) {
-    if (!membrane) throw std::runtime_error("MembraneForceEngine: membrane is not set");
-    states_ = membrane->states(now);
+    given();
+    if (now.isPeriodic) throw std::runtime_error("MembraneForceEngine: a membrane cannot be in a periodic scene");
+    bodies_ = membrane->bodies(now);
     membrane->checkUnchanged();
+    states_.clear();
+    masses_.clear();
+    for (const auto& body : bodies_) {
+        states_.push_back(body->state);
+        masses_.push_back(body->state->mass);
+    }
     allNodes_.resize(states_.size());
     std::iota(allNodes_.begin(), allNodes_.end(), 0);
     for (const int i : allNodes_)
-        if (!(states_[i]->mass > 0.) || !std::isfinite(states_[i]->mass))
-            throw std::runtime_error("Membrane: the mass " + std::to_string(states_[i]->mass) + " kg of body #" +
+        if (!(masses_[i] > 0.) || !std::isfinite(masses_[i]))
+            throw std::runtime_error("Membrane: the mass " + std::to_string(masses_[i]) + " kg of body #" +
                                      std::to_string(membrane->bodyIds[i]) + " must be finite and > 0");
+    interacting_.clear();
+    bodyCount_ = 0;
     arrange();
 }
 
+void MembraneForceEngine::arrange() {
+    prepareSweep(vector<char>(states_.size(), false), 1);
+}
+
+void MembraneForceEngine::checkNode(int node) const {
+    const Body::id_t id = membrane->bodyIds[node];
+    const auto& there = scene->bodies->body;
+    const bool same = id >= 0 && static_cast<std::size_t>(id) < there.size() && there[id] == bodies_[node] &&
+                      bodies_[node]->state == states_[node];
+    if (same && states_[node]->mass == masses_[node]) return;
+    const string which = "Membrane: body #" + std::to_string(id) + " of node " + std::to_string(node);
+    if (!same) throw std::runtime_error(which + " was erased or replaced since its forces are computed");
+    std::ostringstream message;
+    message << which << ": its mass was changed from " << masses_[node] << " to " << states_[node]->mass
+            << " kg since its forces are computed; give pointMasses to a new membrane, or set `membrane` of the engine "
+               "again to go on with that mass";
+    throw std::runtime_error(message.str());
+}
+
+void MembraneForceEngine::checkClumps() {
+    const std::size_t count = scene->bodies->size();
+    if (count == bodyCount_) return; // a clump comes with a body of its own
+    for (const auto& body : bodies_)
+        if (body->clumpId != Body::ID_NONE)
+            throw std::runtime_error("Membrane: body #" + std::to_string(body->id) + " is a member of clump #" +
+                                     std::to_string(body->clumpId) + ", which a node cannot be");
+    bodyCount_ = count;
+}
+
 void MembraneForceEngine::prepareSweep(const vector<char>& owned, int parts) {
-    vector<Real> masses;
-    masses.reserve(states_.size());
-    for (const auto& state : states_) masses.push_back(state->mass);
+    left_.clear();
+    for (const int i : allNodes_)
+        if (!owned[i]) left_.push_back(bodies_[i].get());
     ::membrane::Laws laws;
     laws.crease = law();
     laws.airDensity = airDensity;
-    laws.damping = dampingCoefficients();
+    laws.damping = dampingCoefficients(*membrane, bodies_, zeta);
     const vector<Real> lengths = sweep_.lengths();
-    sweep_.prepare(membrane->rest(), membrane->triangles, laws, masses, owned, parts);
+    sweep_.prepare(membrane->rest(), membrane->triangles, laws, masses_, owned, parts);
     if (lengths.size() == membrane->rest().sides.size()) sweep_.setLengths(lengths);
-}
-
-vector<Real> MembraneForceEngine::dampingCoefficients() const {
-    vector<Real> c;
-    if (!(zeta > 0.)) return c;
-    c.reserve(membrane->rest().sides.size());
-    for (const ::membrane::Side& s : membrane->rest().sides)
-        c.push_back(::membrane::dampingCoefficient(zeta, s.stiffness, 0.5 * (states_[s.a]->mass + states_[s.b]->mass)));
-    return c;
 }
 
 void MembraneForceEngine::gather() {
     const bool seen = seenPositions.size() == states_.size() && seenVelocities.size() == states_.size();
     seenPositions.resize(states_.size());
     seenVelocities.resize(states_.size());
+    checkClumps();
     Real probe = 0.; // 0 times anything finite; NaN otherwise
     for (const int i : allNodes_) {
+        checkNode(i);
         const State& state = *states_[i];
         sweep_.x.set(i, state.pos);
         sweep_.v.set(i, state.vel);
@@ -145,39 +218,64 @@ void MembraneForceEngine::stopDiverged() const {
                              ") has a position or velocity that is not finite");
 }
 
-void MembraneForceEngine::findEngines(const Scene& in) const {
-    ledgers_.clear();
-    hubs_.clear();
-    for (const auto& engine : in.engines)
-        if (auto* const ledger = dynamic_cast<MembraneLedger*>(engine.get()))
-            ledgers_.push_back(ledger);
-        else if (auto* const hub = dynamic_cast<FreeHub*>(engine.get()))
-            hubs_.push_back(hub);
-}
-
-void MembraneForceEngine::findEnginesIfOthers(const Scene& in) const {
-    // By type, too: another engine may lie where one lay before.
-    const auto known = [](const auto& one, const shared_ptr<Engine>& engine) {
-        return one.first == engine.get() && one.second == &typeid(*engine);
+void MembraneForceEngine::checkSides() {
+    const auto computed = [&](const shared_ptr<MembranePhys>& phys) {
+        if (!phys || phys->computed != scene->iter) return false;
+        phys->checked = scene->iter;
+        return true;
     };
-    if (std::equal(knownEngines_.begin(), knownEngines_.end(), in.engines.begin(), in.engines.end(), known)) return;
-    findEngines(in);
-    knownEngines_.clear();
-    for (const auto& engine : in.engines) knownEngines_.emplace_back(engine.get(), &typeid(*engine));
+    const auto all = [&] {
+        return interacting_.size() == membrane->rest().sides.size() &&
+               std::count_if(interacting_.begin(), interacting_.end(), computed) ==
+                   static_cast<std::ptrdiff_t>(interacting_.size());
+    };
+    if (all()) return;
+    findSides();
+    if (all() || !surroundings_.moves(*scene, left_)) return;
+    const auto lost = std::find_if_not(interacting_.begin(), interacting_.end(), computed);
+    refuseSide(lost - interacting_.begin());
 }
 
-MembraneLedger* MembraneForceEngine::ledger(const Scene& in) const {
-    findEnginesIfOthers(in);
-    for (MembraneLedger* const found : ledgers_)
-        if (!found->dead && found->forces.get() == this) return found;
-    return nullptr;
+/// Looks up what computes the sides: interactions may have been removed and added again.
+void MembraneForceEngine::findSides() {
+    interacting_.clear();
+    for (const ::membrane::Side& side : membrane->rest().sides) {
+        const auto& link = scene->interactions->find(membrane->bodyIds[side.a], membrane->bodyIds[side.b]);
+        MembranePhys* const phys = link ? exactly<MembranePhys>(link->phys) : nullptr;
+        interacting_.push_back(phys ? boost::static_pointer_cast<MembranePhys>(link->phys)
+                                    : shared_ptr<MembranePhys>());
+    }
 }
 
-FreeHub* MembraneForceEngine::hub(const Scene& in) const {
-    findEnginesIfOthers(in);
-    for (FreeHub* const found : hubs_)
-        if (!found->dead && found->forces.get() == this) return found;
-    return nullptr;
+void MembraneForceEngine::refuseSide(std::size_t number) const {
+    const ::membrane::Side& side = membrane->rest().sides[number];
+    const string a = std::to_string(side.a), b = std::to_string(side.b);
+    const string which = "Membrane: side " + a + "-" + b + " (bodies #" + std::to_string(membrane->bodyIds[side.a]) +
+                         " and #" + std::to_string(membrane->bodyIds[side.b]) + ")";
+    if (!interacting_[number])
+        throw std::runtime_error(which + " is no interaction of a MembranePhys, so that it pulls nothing; call "
+                                         "addInteractions() of the membrane");
+    throw std::runtime_error(which + " was not computed in this step: put an InteractionLoop with "
+                                     "Ig2_MembraneNode_MembraneNode_MembraneGeom, "
+                                     "Ip2_MembraneMat_MembraneMat_MembranePhys and "
+                                     "Law2_MembraneGeom_MembranePhys_Buckling before the MembraneForceEngine");
+}
+
+/// The contacts of this step. Where they are stiffer than those with which O.dt was checked, it is checked again.
+void MembraneForceEngine::findContacts() {
+    contacts_.clear();
+    if (scene->interactions->size() == interacting_.size()) return; // there are none but sides
+    NodeInteractions found(*membrane, *scene);
+    if (found.sides && !takesInteractions() && surroundings_.computesInteractions(*scene))
+        throw std::runtime_error(getClassName() + ": the interactions of its membrane would pull once more; call "
+                                                  "removeInteractions() of the membrane");
+    contacts_.swap(found.contacts);
+    if (contacts_.empty() || forceTimeStep) return;
+    constexpr Real grown = 1.1;
+    const Real fastest = ContactStiffness(contacts_, bodies_, *scene).fastest;
+    if (fastest <= grown * checkedContacts_) return;
+    checkTimeStep();
+    checkedContacts_ = fastest;
 }
 
 void MembraneForceEngine::continueLedger(const MembraneLedger* of, ::membrane::Sums wanted) {
@@ -204,26 +302,33 @@ void MembraneForceEngine::computeForces() {
                                sweep_.creaseForce(i) + sweep_.dampingForce(i) + sweep_.dragForce(i));
 }
 
-TimeStepState MembraneForceEngine::timeStepState(const Scene& in) const {
-    TimeStepState now(*membrane, states_, airDensity);
+TimeStepState MembraneForceEngine::timeStepState(const Scene& in, const vector<shared_ptr<Body>>& bodies,
+                                                 const vector<NodeContact>& contacts) const {
+    TimeStepState now(*membrane, bodies, zeta, airDensity);
     if (const FreeHub* hub = this->hub(in)) hub->addTo(now.masses);
+    now.contacts = ContactStiffness(contacts, bodies, in);
     return now;
 }
 
 void MembraneForceEngine::checkTimeStep() {
-    if (!forceTimeStep) {
-        writeBack();
-        const TimeStepState now = timeStepState(*scene);
-        const vector<Real> damping = dampingCoefficients();
-        if (!::membrane::withinCriticalTimeStep({membrane->rest(), now.masses, now.positions, damping, now.drag, law()},
-                                                scene->dt)) {
-            std::ostringstream message;
-            message << "MembraneForceEngine: O.dt = " << scene->dt << " s must be <= " << criticalTimeStep()
-                    << " s, the critical time step; lower it, or set forceTimeStep=True";
-            throw std::runtime_error(message.str());
-        }
-    }
     checkedStep_ = scene->dt;
+    if (forceTimeStep) return;
+    writeBack();
+    TimeStepState now = timeStepState(*scene, bodies_, contacts_);
+    if (::membrane::withinCriticalTimeStep(now.input(*membrane, law()), scene->dt)) return;
+    checkedStep_ = -1.;
+    std::ostringstream message;
+    message << "MembraneForceEngine: O.dt = " << scene->dt
+            << " s must be <= " << ::membrane::criticalTimeStep(now.input(*membrane, law()))
+            << " s, the critical time step; lower it, or set forceTimeStep=True";
+    if (now.contacts.node >= 0) {
+        const int node = now.contacts.node, other = now.contacts.other;
+        now.contacts = ContactStiffness();
+        message << " (" << ::membrane::criticalTimeStep(now.input(*membrane, law()))
+                << " s without contacts, of which that of bodies #" << membrane->bodyIds[node] << " and #" << other
+                << " weighs most)";
+    }
+    throw std::runtime_error(message.str());
 }
 
 void MembraneForceEngine::advance(long steps) {
@@ -240,8 +345,8 @@ Vector3r MembraneForceEngine::totalForce(int node) const {
     return scene->forces.getForce(membrane->bodyIds[node]);
 }
 
-::membrane::Points MembraneForceEngine::positionsNow(Scene& now) const {
-    const auto guarded = guard_.look();
+::membrane::Points MembraneForceEngine::positionsNow(const Scene& now) const {
+    const StepGuard::Look look(/*between*/ false);
     return presentPositions(now);
 }
 
@@ -267,27 +372,24 @@ vector<Vector3r> MembraneForceEngine::ofNodes(Vector3r (::membrane::Sweep::*forc
 }
 
 vector<Vector3r> MembraneForceEngine::nodeForces() {
-    const shared_ptr<Scene> current = Omega::instance().getScene();
+    const shared_ptr<Scene> current = sceneAtRest();
     current->forces.sync();
     vector<Vector3r> forces;
-    for (const int i : allNodes_) forces.push_back(current->forces.getForce(membrane->bodyIds[i]));
+    for (const int id : membrane->bodyIds) forces.push_back(current->forces.getForce(id));
     return forces;
 }
 
 Real MembraneForceEngine::criticalTimeStep() {
     const shared_ptr<Scene> current = Omega::instance().getScene();
     writeBack();
-    if (preparedFor_ != current.get()) {
-        if (!membrane) throw std::runtime_error("MembraneForceEngine: membrane is not set");
-        states_ = membrane->states(*current);
-        membrane->checkUnchanged();
-    }
-    const TimeStepState now = timeStepState(*current);
-    const vector<Real> damping = dampingCoefficients();
-    return ::membrane::criticalTimeStep({membrane->rest(), now.masses, now.positions, damping, now.drag, law()});
+    given().checkUnchanged();
+    const auto bodies = membrane->bodies(*current);
+    return ::membrane::criticalTimeStep(
+        timeStepState(*current, bodies, NodeInteractions(*membrane, *current).contacts).input(*membrane, law()));
 }
 
 Real MembraneForceEngine::creaseEnergy(const ::membrane::Points& x) const {
+    if (!membrane || x.size() != membrane->nodes.size()) return 0.;
     const ::membrane::CreaseLaw lawNow = law();
     Real energy = 0.;
     for (const ::membrane::Crease& c : membrane->rest().creases)
@@ -298,19 +400,31 @@ Real MembraneForceEngine::creaseEnergy(const ::membrane::Points& x) const {
 
 Real MembraneForceEngine::creaseEnergyNow() {
     writeBack();
-    if (!membrane) throw std::runtime_error("MembraneForceEngine: membrane is not set");
-    return creaseEnergy(membrane->positions(*Omega::instance().getScene()));
+    return creaseEnergy(given().positions(*Omega::instance().getScene()));
 }
 
 vector<Real> MembraneForceEngine::creaseAngles(const boost::python::object& at) {
     writeBack();
-    if (!membrane) throw std::runtime_error("MembraneForceEngine: membrane is not set");
-    const ::membrane::Points x = membrane->positions(*Omega::instance().getScene(),
-                                                     pointsFrom(at, "MembraneForceEngine.creaseAngles: positions"));
+    const ::membrane::Points x =
+        given().positions(*Omega::instance().getScene(), pointsFrom(at, "MembraneForceEngine.creaseAngles: positions"));
     vector<Real> angles;
     for (const ::membrane::Crease& c : membrane->rest().creases)
         angles.push_back(::membrane::creaseState(c.rest, x[c.a], x[c.b], x[c.c], x[c.d]).theta);
     return angles;
+}
+
+/// The scene, which must hold the nodes and not be running: forces that threads add to must not be summed.
+shared_ptr<Scene> MembraneForceEngine::sceneAtRest() const {
+    const shared_ptr<Scene> current = Omega::instance().getScene();
+    given().bodies(*current);
+    if (StepGuard::othersRun())
+        throw std::runtime_error(getClassName() + ": nodeForces: the scene is running; pause it");
+    return current;
+}
+
+const Membrane& MembraneForceEngine::given() const {
+    if (!membrane) throw std::runtime_error(getClassName() + ": membrane is not set");
+    return *membrane;
 }
 
 } // namespace yade

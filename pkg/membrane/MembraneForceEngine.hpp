@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "Membrane.hpp"
+#include "MembranePhys.hpp"
+#include "NodeContacts.hpp"
+#include "SceneMark.hpp"
 #include "StepGuard.hpp"
+#include "Surroundings.hpp"
 #include "kernels/Sweep.hpp"
 #include <core/GlobalEngine.hpp>
 
@@ -13,27 +17,33 @@ struct TimeStepState;
 
 class MembraneForceEngine : public GlobalEngine {
 public:
-    void action() override;
+    void action() final;
     void postLoad(MembraneForceEngine&);
-    virtual void preSave(MembraneForceEngine&) {}
+    void preSave(MembraneForceEngine&);
 
-    /// Step in which the forces were last computed; -1: none yet.
-    long lastStep() const { return lastStep_; }
+    /// Whether it has computed the forces in the present step of a scene.
+    bool hasRun(const Scene& in) const { return lastStep_ == in.iter && preparedFor_.is(&in); }
     int nodeCount() const { return static_cast<int>(states_.size()); }
     const vector<shared_ptr<State>>& states() const { return states_; }
     /// Position [m] and velocity [m/s] of a node, as the last step's forces saw them.
     virtual Vector3r positionSeen(int node) const { return sweep_.x.at(node); }
     virtual Vector3r velocitySeen(int node) const { return sweep_.v.at(node); }
     vector<Vector3r> lastPositions() const;
-    /// Present positions [m] of the nodes, for a thread other than the one that runs the scene: waits for a step's end.
-    ::membrane::Points positionsNow(Scene& now) const;
+    /// Present positions [m] of the nodes, for the thread that draws them.
+    ::membrane::Points positionsNow(const Scene& now) const;
     vector<Vector3r> creaseForces() const { return ofNodes(&::membrane::Sweep::creaseForce); }
     vector<Vector3r> dampingForces() const { return ofNodes(&::membrane::Sweep::dampingForce); }
     vector<Vector3r> dragForces() const { return ofNodes(&::membrane::Sweep::dragForce); }
     boost::python::object lastPositionsBytes() const;
 
     /// The free hub that this engine's forces turn, or none.
-    FreeHub* hub(const Scene& in) const;
+    FreeHub* hub(const Scene& in) const { return surroundings_.hub(*this, in); }
+    /// The membrane; refuses that there is none.
+    const Membrane& given() const;
+    /// Whether a NewtonIntegrator of the present step moves a body.
+    bool isMoved(const Body& body) const { return surroundings_.moves(*scene, {&body}); }
+    /// The contacts of its nodes in the last step.
+    const vector<NodeContact>& contacts() const { return contacts_; }
 
     /// For the ledger: the nodes that the sweep does not move, and everything summed over the others.
     virtual const vector<int>& nodesLeft() const { return allNodes_; }
@@ -56,6 +66,7 @@ public:
 
     static void advance(long steps);
     Real criticalTimeStep();
+    /// Energy [J] of the creases at given positions of the nodes; 0 without a membrane.
     Real creaseEnergy(const ::membrane::Points& x) const;
     Real creaseEnergyNow();
     vector<Real> creaseAngles(const boost::python::object& at);
@@ -64,8 +75,8 @@ public:
     // clang-format off
     YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MembraneForceEngine, GlobalEngine,
         "Creases (7), (8), damping (9) and air drag (10) of a :yref:`Membrane`; a part whose parameter is 0 is not computed. It also "
-        "raises the faults that the functors met, refuses a time step above the critical one, and stops at the first number that is "
-        "not finite. The leapfrog's velocities lie half a step before the positions; damping and drag take those at the time of the "
+        "raises the faults that the functors met, refuses a time step above the critical one, contacts included, and stops at the first number that is "
+        "not finite. It also stops where a side was not computed, where nodes were erased, clumped or given another mass since it began, and where two engines do one work. The leapfrog's velocities lie half a step before the positions; damping and drag take those at the time of the "
         "positions, extrapolated from the last two. Put it after InteractionLoop and before NewtonIntegrator.",
         ((shared_ptr<Membrane>, membrane, , Attr::triggerPostLoad, "The membrane on which the forces act."))
         ((Real, beta, 0., Attr::triggerPostLoad, "Crease stiffness parameter beta [-], >= 0; 0: no creases."))
@@ -82,60 +93,80 @@ public:
         ,
         .def("advance", &MembraneForceEngine::advance, "Run so many steps of the scene: O.step() without the way through Python in between.")
         .staticmethod("advance")
-        .def("criticalTimeStep", &MembraneForceEngine::criticalTimeStep, "Estimate of the critical time step [s] in the present state, from the actual "
-            "stiffnesses, damping, drag, creases and masses; contacts of other functors are not counted.")
-        .def("creaseEnergy", &MembraneForceEngine::creaseEnergyNow, "Energy [J] stored in the creases in the present state.")
-        .def("creaseAngles", &MembraneForceEngine::creaseAngles, (boost::python::arg("positions") = boost::python::list()), "Angle [rad] of each crease: 0 "
+        .def("criticalTimeStep", &Guarded<&MembraneForceEngine::criticalTimeStep>::call, "Estimate of the critical time step [s] in the present state, from the actual "
+            "stiffnesses, damping, drag, creases and masses, and from the contacts that nodes have now, where their stiffness is that of a NormShearPhys.")
+        .def("creaseEnergy", &Guarded<&MembraneForceEngine::creaseEnergyNow>::call, "Energy [J] stored in the creases in the present state.")
+        .def("creaseAngles", &Guarded<&MembraneForceEngine::creaseAngles>::call, (boost::python::arg("positions") = boost::python::list()), "Angle [rad] of each crease: 0 "
             "closed, pi flat, below 0 passed through itself; at given positions of the N nodes [m], default: the present ones.")
-        .def("lastPositions", &MembraneForceEngine::lastPositions, "Positions [m] of the nodes as the last step's forces saw them, before the "
+        .def("lastPositions", &Guarded<&MembraneForceEngine::lastPositions>::call, "Positions [m] of the nodes as the last step's forces saw them, before the "
             "integrator moved them; empty before the first step.")
-        .def("lastPositionsBytes", &MembraneForceEngine::lastPositionsBytes, "The same as bytes, 3 N doubles, for numpy.frombuffer.")
-        .def("creaseForces", &MembraneForceEngine::creaseForces, "Forces of the creases on the nodes in the last step [N]; 0 where a MembraneIntegrator has moved them.")
-        .def("dampingForces", &MembraneForceEngine::dampingForces, "Forces of damping on the nodes in the last step [N]; 0 where a MembraneIntegrator has moved them.")
-        .def("dragForces", &MembraneForceEngine::dragForces, "Forces of air drag on the nodes in the last step [N]; 0 where a MembraneIntegrator has moved them.")
-        .def("nodeForces", &MembraneForceEngine::nodeForces, "All forces on the nodes [N] in a step in which nothing was moved, gravity apart.")
-        .def("forgetVelocities", &MembraneForceEngine::forgetVelocities, "Call it after giving nodes other velocities: until the next step they count as they are.")
-        .def("writeBack", &MembraneForceEngine::writeBack, "Bring the bodies up to date, in the middle of a run with an exchangePeriod above 1.")
+        .def("lastPositionsBytes", &Guarded<&MembraneForceEngine::lastPositionsBytes>::call, "The same as bytes, 3 N doubles, for numpy.frombuffer.")
+        .def("creaseForces", &Guarded<&MembraneForceEngine::creaseForces>::call, "Forces of the creases on the nodes in the last step [N]; 0 where a MembraneIntegrator has moved them.")
+        .def("dampingForces", &Guarded<&MembraneForceEngine::dampingForces>::call, "Forces of damping on the nodes in the last step [N]; 0 where a MembraneIntegrator has moved them.")
+        .def("dragForces", &Guarded<&MembraneForceEngine::dragForces>::call, "Forces of air drag on the nodes in the last step [N]; 0 where a MembraneIntegrator has moved them.")
+        .def("nodeForces", &Guarded<&MembraneForceEngine::nodeForces>::call, "All forces on the nodes [N] in a step in which nothing was moved, gravity apart.")
+        .def("forgetVelocities", &Guarded<&MembraneForceEngine::forgetVelocities>::call, "Call it after giving nodes other velocities: until the next step they count as they are.")
+        .def("writeBack", &Guarded<&MembraneForceEngine::writeBack>::call, "Bring the bodies up to date, in the middle of a run with an exchangePeriod above 1.")
     );
     // clang-format on
 
 protected:
+    vector<shared_ptr<Body>> bodies_;
     vector<shared_ptr<State>> states_;
     vector<int> allNodes_;
     ::membrane::Sweep sweep_;
-    long lastStep_ = -1;
     ::membrane::Sums madeSums_ = ::membrane::Sums::none;
+    mutable Surroundings surroundings_;
 
     /// Looks up the bodies and computes what stays the same while it runs.
     virtual void prepare(Scene& now);
     /// Decides which nodes the sweep moves, and calls prepareSweep().
-    virtual void arrange() { prepareSweep(vector<char>(states_.size(), false), 1); }
+    virtual void arrange();
     virtual void gather();
-    virtual ::membrane::Points presentPositions(Scene& now) const { return membrane->positions(now); }
+    virtual ::membrane::Points presentPositions(const Scene& now) const { return membrane->positions(now); }
     virtual void computeForces();
+    /// Fetches into the attributes what a saved engine needs to go on.
+    virtual void fetch() {}
+    /// Whether sides are interactions.
+    virtual bool takesInteractions() const { return true; }
+    shared_ptr<Scene> sceneAtRest() const;
+    virtual void forget();
     /// Builds the tables of the forces for nodes of which `owned` are moved by the sweep.
     void prepareSweep(const vector<char>& owned, int parts);
+    /// Refuses a node whose body was erased, replaced, clumped or given another mass since prepare(), which would go on
+    /// as it was.
+    void checkNode(int node) const;
+    /// The same of all nodes if bodies have come or gone.
+    void checkClumps();
     /// The ledger that counts this engine's energies in this step, or none.
-    MembraneLedger* ledger(const Scene& in) const;
-    /// Called when O.engines are others than before: looking through them in every step takes longer than many a force.
-    virtual void findEngines(const Scene& in) const;
-    void findEnginesIfOthers(const Scene& in) const;
+    MembraneLedger* ledger(const Scene& in) const { return surroundings_.ledger(*this, in); }
     /// What the sweep needs to begin or continue a ledger's sums.
     void continueLedger(const MembraneLedger* ledger, ::membrane::Sums wanted);
+    bool isPreparedFor(const Scene& in) const { return preparedFor_.is(&in); }
     [[noreturn]] void stopDiverged() const;
 
 private:
-    mutable StepGuard guard_;
-    const Scene* preparedFor_ = nullptr;
-    mutable vector<std::pair<const Engine*, const std::type_info*>> knownEngines_;
-    mutable vector<MembraneLedger*> ledgers_; ///< in the order of O.engines
-    mutable vector<FreeHub*> hubs_;
+    SceneMark preparedFor_;
+    shared_ptr<Membrane> preparedMembrane_;
+    long preparedVersion_ = -1; ///< of that membrane
+    vector<Real> masses_;       ///< of the nodes [kg], for which it is prepared
+    std::size_t bodyCount_ = 0; ///< of the scene, when clumps were last looked for
+    long lastStep_ = -1;        ///< in which the forces were computed; -1: none yet
     Real checkedStep_ = -1.;
-    bool keepLengths_ = false; ///< the sweep's lengths are those of the ledger's last step
+    Real checkedContacts_ = 0.; ///< ContactStiffness::fastest with which O.dt was checked
+    bool keepLengths_ = false;  ///< the sweep's lengths are those of the ledger's last step
+    vector<NodeContact> contacts_;
+    vector<const Body*> left_;                     ///< bodies of the nodes that NewtonIntegrator may move
+    vector<shared_ptr<MembranePhys>> interacting_; ///< what computes the sides
 
-    TimeStepState timeStepState(const Scene& in) const;
+    void step();
+    TimeStepState timeStepState(const Scene& in, const vector<shared_ptr<Body>>& bodies,
+                                const vector<NodeContact>& contacts) const;
     void checkTimeStep();
-    vector<Real> dampingCoefficients() const;
+    void checkSides();
+    void findSides();
+    [[noreturn]] void refuseSide(std::size_t side) const;
+    void findContacts();
     vector<Vector3r> ofNodes(Vector3r (::membrane::Sweep::*force)(int) const) const;
 };
 REGISTER_SERIALIZABLE(MembraneForceEngine);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
+#include "MembraneNode.hpp"
 #include <core/Dispatching.hpp>
-#include <pkg/common/Sphere.hpp>
 #include <pkg/dem/ScGeom.hpp>
 
 namespace yade {
@@ -33,17 +33,18 @@ public:
 };
 REGISTER_SERIALIZABLE(MembraneGeom);
 
-class Ig2_Sphere_Sphere_MembraneGeom : public IGeomFunctor {
+class Ig2_MembraneNode_MembraneNode_MembraneGeom : public IGeomFunctor {
 public:
     bool go(const shared_ptr<Shape>&, const shared_ptr<Shape>&, const State& state1, const State& state2,
             const Vector3r& shift2, const bool& force, const shared_ptr<Interaction>& link) override;
-    FUNCTOR2D(Sphere, Sphere);
-    DEFINE_FUNCTOR_ORDER_2D(Sphere, Sphere);
+    FUNCTOR2D(MembraneNode, MembraneNode);
+    DEFINE_FUNCTOR_ORDER_2D(MembraneNode, MembraneNode);
     // clang-format off
-    YADE_CLASS_BASE_DOC(Ig2_Sphere_Sphere_MembraneGeom, IGeomFunctor,
-        "Updates the :yref:`MembraneGeom` of existing sides. Spheres that merely touch do not interact (paper, 2.1 and 3.3).");
+    YADE_CLASS_BASE_DOC(Ig2_MembraneNode_MembraneNode_MembraneGeom, IGeomFunctor,
+        "Updates the :yref:`MembraneGeom` of existing sides. Nodes that merely touch one another do not interact (paper, 2.1 and 3.3); what a node "
+        "and another body do is left to YADE's functors for spheres, which may stand beside this one in either order.");
     // clang-format on
 };
-REGISTER_SERIALIZABLE(Ig2_Sphere_Sphere_MembraneGeom);
+REGISTER_SERIALIZABLE(Ig2_MembraneNode_MembraneNode_MembraneGeom);
 
 } // namespace yade

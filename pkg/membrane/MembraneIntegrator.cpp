@@ -29,8 +29,8 @@ void MembraneIntegrator::postLoad(MembraneIntegrator&) {
                                     " must be > 0");
 }
 
-void MembraneIntegrator::preSave(MembraneForceEngine&) {
-    if (scene_ != Omega::instance().getScene().get()) return;
+void MembraneIntegrator::fetch() {
+    if (!held_.is(Omega::instance().getScene().get())) return;
     writeBack();
     centredVelocities.resize(states_.size());
     for (const int i : allNodes_) centredVelocities[i] = sweep_.u.at(i);
@@ -42,30 +42,19 @@ void MembraneIntegrator::preSave(MembraneForceEngine&) {
     }
 }
 
-void MembraneIntegrator::action() {
-    try {
-        MembraneForceEngine::action();
-    } catch (...) {
-        writeBack();
-        throw;
-    }
-}
-
 /// Whether a node may be moved here: it can touch nothing and is free.
 bool MembraneIntegrator::belongsHere(int node) const {
     return !bodies_[node]->isBounded() && !(states_[node]->blockedDOFs & State::DOF_XYZ);
 }
 
 void MembraneIntegrator::prepare(Scene& now) {
-    if (!membrane) throw std::runtime_error("MembraneIntegrator: membrane is not set");
-    const bool known = scene_ == &now && sweep_.x.size() == membrane->bodyIds.size();
+    const bool known = holds(now);
     if (known) writeBack();
-    bodies_.clear();
-    for (const int id : membrane->bodyIds) bodies_.push_back(Body::byId(id, &now));
     MembraneForceEngine::prepare(now);
     if (known) return;
 
-    scene_ = &now;
+    held_.set(now);
+    heldMembrane_ = membrane;
     bodiesCurrent_ = true;
     const std::size_t count = states_.size();
     const bool saved =
@@ -84,11 +73,21 @@ void MembraneIntegrator::prepare(Scene& now) {
     syncs_ = 0;
 }
 
+void MembraneIntegrator::forget() {
+    writeBack();
+    owned_.clear();
+    shared_.clear();
+    outsideShared_.clear();
+    held_.clear();
+    heldMembrane_.reset();
+    MembraneForceEngine::forget();
+}
+
 void MembraneIntegrator::arrange() {
     vector<char> mine(states_.size());
     vector<Vector3r> seenX, seenV;
     vector<int> shared;
-    const bool continued = scene_ == scene && sweep_.x.size() == states_.size();
+    const bool continued = holds(*scene);
     const Vector3r never = Vector3r::Constant(NaN);
     owned_.clear();
     for (const int i : allNodes_) {
@@ -112,62 +111,26 @@ void MembraneIntegrator::arrange() {
         shared.push_back(i);
     }
     shared_.swap(shared);
-    checkEngines();
     sharedSeenPositions_.swap(seenX);
     sharedSeenVelocities_.swap(seenV);
     prepareSweep(mine, wantedParts());
 }
 
 int MembraneIntegrator::wantedParts() const {
-    if (ompThreads > 0) return ompThreads;
+    constexpr int most = 1024; // each has tables of its own
+    if (ompThreads > most)
+        throw std::runtime_error("MembraneIntegrator: ompThreads = " + std::to_string(ompThreads) +
+                                 " must be <= " + std::to_string(most));
+    if (ompThreads > 0) return std::min(ompThreads, static_cast<int>(states_.size()));
     return std::min(omp_get_max_threads(), std::max(1, static_cast<int>(states_.size()) / nodesOfThread));
 }
 
-/// Nobody else may compute the membrane's forces, nor move the shared nodes before they are known.
-void MembraneIntegrator::checkEngines() const {
-    bool met = false;
-    for (const auto& engine : scene->engines) {
-        if (engine.get() == this) {
-            if (met) throw std::runtime_error("MembraneIntegrator: it is in O.engines twice");
-            met = true;
-        } else if (engine->dead) {
-            continue;
-        } else if (const auto* other = dynamic_cast<const MembraneForceEngine*>(engine.get())) {
-            if (other->membrane == membrane)
-                throw std::runtime_error("MembraneIntegrator: another engine in O.engines, a " + other->getClassName() +
-                                         ", computes the forces of its membrane, too");
-        } else if (engine->getClassName() == "InteractionLoop" && membrane->hasInteractions()) {
-            throw std::runtime_error("MembraneIntegrator: the interactions of its membrane would pull once more; call "
-                                     "removeInteractions() of the membrane");
-        } else if (!met && !shared_.empty() && dynamic_cast<const NewtonIntegrator*>(engine.get())) {
-            throw std::runtime_error("MembraneIntegrator: NewtonIntegrator must come after it in O.engines");
-        }
-    }
-}
-
-void MembraneIntegrator::findEngines(const Scene& in) const {
-    MembraneForceEngine::findEngines(in);
-    newtons_.clear();
-    fields_.clear();
-    for (const auto& engine : in.engines)
-        if (const auto newton = boost::dynamic_pointer_cast<NewtonIntegrator>(engine))
-            newtons_.push_back(newton);
-        else if (auto* const field = dynamic_cast<CentrifugalField*>(engine.get()))
-            fields_.push_back(field);
-}
-
-/// The integrator and the field that count in this step: the first that is alive, if any.
+/// The integrator and the field that count in this step.
 void MembraneIntegrator::chooseEngines() {
-    findEnginesIfOthers(*scene);
-    const auto alive = std::find_if(newtons_.begin(), newtons_.end(), [](const auto& found) { return !found->dead; });
-    if (newtons_.empty())
-        newton_.reset();
-    else if (const auto& chosen = alive == newtons_.end() ? newtons_.back() : *alive; newton_ != chosen)
-        newton_ = chosen;
-    centrifugal_ = 0.;
-    for (const CentrifugalField* const field : fields_)
-        if (!field->dead && field->membrane == membrane && takesField(*scene))
-            centrifugal_ = field->omega * field->omega;
+    newton_ = surroundings_.newton(*scene);
+    sharedMoveHere_ = !newton_ || newton_->dead;
+    const CentrifugalField* const field = takesField(*scene) ? surroundings_.field(*membrane, *scene) : nullptr;
+    centrifugal_ = field ? field->omega * field->omega : 0.;
     if (movesShared()) return;
     if (newton_->mask <= 0 || (newton_->mask & nodeMask))
         throw std::runtime_error("MembraneIntegrator: NewtonIntegrator would move its nodes once more; give it mask=" +
@@ -187,8 +150,12 @@ void MembraneIntegrator::gather() {
 
 /// Takes over what was changed by hand since the bodies were last brought up to date.
 void MembraneIntegrator::readBodies() {
+    checkClumps();
     bool same = sweep_.parts() == wantedParts();
-    for (const int i : owned_) same = same && belongsHere(i);
+    for (const int i : owned_) {
+        checkNode(i);
+        same = same && belongsHere(i);
+    }
     for (const int i : shared_) same = same && !belongsHere(i);
     if (!same) arrange();
     Real probe = 0.;
@@ -207,6 +174,7 @@ void MembraneIntegrator::readShared() {
     Real probe = 0.;
     for (std::size_t k = 0; k < shared_.size(); ++k) {
         const int i = shared_[k];
+        checkNode(i);
         const State& state = *states_[i];
         sweep_.x.set(i, state.pos);
         sweep_.v.set(i, state.vel);
@@ -274,6 +242,11 @@ Vector3r MembraneIntegrator::totalForce(int node) const {
     return sweep_.force(node) + outsideShared_[place] + fieldForce(node);
 }
 
+/// Whether the arrays hold the nodes of this membrane in a scene.
+bool MembraneIntegrator::holds(const Scene& in) const {
+    return held_.is(&in) && heldMembrane_ == membrane && sweep_.x.size() == states_.size();
+}
+
 bool MembraneIntegrator::takesField(const Scene& in) const {
     return !ledger(in); // which counts work from outside, and the field's is such
 }
@@ -319,9 +292,9 @@ void MembraneIntegrator::writeBack() {
     sinceExchange_ = 0;
 }
 
-::membrane::Points MembraneIntegrator::presentPositions(Scene& now) const {
+::membrane::Points MembraneIntegrator::presentPositions(const Scene& now) const {
     ::membrane::Points x = MembraneForceEngine::presentPositions(now);
-    if (scene_ == &now && !bodiesCurrent_)
+    if (holds(now) && !bodiesCurrent_)
         for (const int i : owned_) x[i] = sweep_.x.at(i);
     return x;
 }
@@ -347,9 +320,10 @@ std::pair<Real, Real> MembraneIntegrator::powerFromOutside() const {
 }
 
 vector<Vector3r> MembraneIntegrator::nodeForces() {
+    const shared_ptr<Scene> current = sceneAtRest();
     vector<Vector3r> forces(states_.size());
     for (const int i : owned_) forces[i] = sweep_.force(i) + fieldForce(i); // with those from outside
-    if (!movesShared()) Omega::instance().getScene()->forces.sync();
+    if (!movesShared()) current->forces.sync();
     for (const int i : shared_) forces[i] = totalForce(i);
     return forces;
 }

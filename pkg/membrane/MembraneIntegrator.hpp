@@ -12,8 +12,6 @@ class MembraneIntegrator : public MembraneForceEngine {
 public:
     ~MembraneIntegrator() override {}
     void postLoad(MembraneIntegrator&);
-    void preSave(MembraneForceEngine&) override;
-    void action() override;
 
     Vector3r positionSeen(int node) const override;
     Vector3r velocitySeen(int node) const override;
@@ -51,33 +49,34 @@ public:
 protected:
     void prepare(Scene& now) override;
     void arrange() override;
+    void forget() override;
     void gather() override;
     void computeForces() override;
-    void findEngines(const Scene& in) const override;
-    ::membrane::Points presentPositions(Scene& now) const override;
+    void fetch() override;
+    bool takesInteractions() const override { return false; }
+    ::membrane::Points presentPositions(const Scene& now) const override;
 
 private:
-    vector<shared_ptr<Body>> bodies_;
     vector<int> owned_, shared_; ///< nodes in the sweep, and those exchanged in every step
     vector<Vector3r> sharedSeenPositions_, sharedSeenVelocities_; ///< of the shared nodes, in the step before
-    const Scene* scene_ = nullptr;                                ///< whose nodes the arrays hold
+    SceneMark held_;                                              ///< whose nodes the arrays hold
+    shared_ptr<Membrane> heldMembrane_;
     /// The bodies hold what the arrays hold, but for changes by hand; a thread that draws asks, too.
     std::atomic<bool> bodiesCurrent_{true};
     bool forget_ = false;
-    bool moved_ = false;                                   ///< whether the last step did
-    mutable vector<shared_ptr<NewtonIntegrator>> newtons_; ///< in O.engines
-    mutable vector<CentrifugalField*> fields_;
-    shared_ptr<NewtonIntegrator> newton_; ///< of the scene, in this step
-    Real centrifugal_ = 0.;               ///< omega² [1/s²] of the scene's CentrifugalField, in this step
-    vector<Vector3r> outsideShared_;      ///< forces [N] from outside on the shared nodes, if they move here
+    bool moved_ = false;                 ///< whether the last step did
+    NewtonIntegrator* newton_ = nullptr; ///< of the scene, only to be used within a step
+    bool sharedMoveHere_ = true;         ///< whether the shared nodes move here, too
+    Real centrifugal_ = 0.;              ///< omega² [1/s²] of the scene's CentrifugalField, in this step
+    vector<Vector3r> outsideShared_;     ///< forces [N] from outside on the shared nodes, if they move here
     int sinceExchange_ = 0;
     unsigned long syncs_ = 0; ///< how often the scene's forces had been summed, or will have been, since the last step
 
     bool belongsHere(int node) const;
+    bool holds(const Scene& in) const;
     int wantedParts() const;
-    void checkEngines() const;
     void chooseEngines();
-    bool movesShared() const { return !newton_ || newton_->dead; }
+    bool movesShared() const { return sharedMoveHere_; }
     void moveShared();
     Vector3r fieldForce(int node) const;
     void tellCollider() const;

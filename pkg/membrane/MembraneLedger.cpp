@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneLedger.hpp"
+#include "ContactBook.hpp"
 #include "FreeHub.hpp"
 #include "RunEnd.hpp"
 #include <array>
@@ -12,9 +13,12 @@ YADE_PLUGIN((MembraneLedger));
 
 namespace {
 
-/// Works of creases, damping and drag in a single step, over the energies of the membrane, that make all energies
-/// wanted in the next one: a run that goes wrong may do so within a few steps.
+/// Works of creases, damping, drag and contacts in a single step, over the energies of the membrane, that make all
+/// energies wanted in the next one: a run that goes wrong may do so within a few steps.
 constexpr Real restlessShare = 1e-3;
+
+/// Of doneWorks: crease, damping, drag, driven nodes, others, angular impulse.
+constexpr std::size_t entryCount = 6;
 
 /// A vector turned about -z by `angle` [rad]: the chord of a driven node's step before, from that of this step.
 Vector3r turnedBack(const Vector3r& v, Real angle) {
@@ -33,10 +37,10 @@ Vector3r freeDirections(const State& state) {
 void MembraneLedger::action() {
     if (!forces || !forces->membrane) throw std::runtime_error("MembraneLedger: forces is not set, or has no membrane");
     const Membrane& membrane = *forces->membrane;
-    if (forces->lastStep() != scene->iter || forces->madeSums() == ::membrane::Sums::none)
+    if (!forces->hasRun(*scene) || forces->madeSums() == ::membrane::Sums::none)
         throw std::runtime_error("MembraneLedger: its MembraneForceEngine must run in the same step, before it");
     const FreeHub* const hub = forces->hub(*scene);
-    if (hub && hub->lastStep() != scene->iter)
+    if (hub && !hub->hasRun(*scene))
         throw std::runtime_error("MembraneLedger: FreeHub must run in the same step, before it");
     const ::membrane::Sweep& sweep = forces->sweep();
     if (started && !lastLengths.empty() && lastLengths.size() != membrane.rest().sides.size())
@@ -46,8 +50,9 @@ void MembraneLedger::action() {
     // Of crease, damping, drag, driven nodes, others: power at the velocities before this step, and at their mean.
     const ::membrane::MotionSums& moved = sweep.motionSums();
     const auto [arrivingOutside, leavingOutside] = forces->powerFromOutside();
-    std::array<Real, 6> arriving{moved.arriving[0], moved.arriving[1], moved.arriving[2], 0., arrivingOutside, 0.};
-    std::array<Real, 6> mean{
+    std::array<Real, entryCount> arriving{
+        moved.arriving[0], moved.arriving[1], moved.arriving[2], 0., arrivingOutside, 0.};
+    std::array<Real, entryCount> mean{
         moved.power[0], moved.power[1], moved.power[2], 0., 0.5 * (arrivingOutside + leavingOutside), moved.torque};
     Real kineticNow = moved.kinetic, potentialNow = moved.potential, momentumNow = moved.angularMomentum;
     const auto& states = forces->states();
@@ -92,6 +97,7 @@ void MembraneLedger::action() {
 
     // Work from the step before to this one is the mean of both forces times the velocity between them: half a step
     // with this step's forces before it, and half a step after it.
+    bookContacts();
     if (started) {
         doneKinks += sweep.sideEnergies().kink;
         if (all) {
@@ -109,7 +115,7 @@ void MembraneLedger::action() {
         for (std::size_t i = 0; i < mean.size(); ++i) doneWorks[i] = 0.5 * scene->dt * (2. * mean[i] - arriving[i]);
     }
     countedStep = scene->dt;
-    restless = !(scene->dt * (std::abs(mean[0]) + std::abs(mean[1]) + std::abs(mean[2])) <=
+    restless = !(scene->dt * (std::abs(mean[0]) + std::abs(mean[1]) + std::abs(mean[2]) + std::abs(mean[4])) <=
                  restlessShare * (std::abs(kinetic) + elastic));
     if (!all) return;
 
@@ -128,7 +134,20 @@ void MembraneLedger::action() {
 }
 
 void MembraneLedger::postLoad(MembraneLedger&) {
+    const StepGuard::Look look;
     if (period <= 0) throw std::invalid_argument("MembraneLedger: period = " + std::to_string(period) + " must be > 0");
+    if (started && doneWorks.size() != entryCount)
+        throw std::invalid_argument("MembraneLedger: doneWorks has " + std::to_string(doneWorks.size()) +
+                                    " entries; a ledger that was started has " + std::to_string(entryCount));
+    if (contactWorks.size() != contactPairs.size() || contactMost.size() != contactPairs.size())
+        throw std::invalid_argument("MembraneLedger: contactPairs, contactWorks and contactMost must be of one length");
+}
+
+void MembraneLedger::bookContacts() {
+    const auto& contacts = forces->contacts();
+    if (contacts.empty() && contactPairs.empty()) return;
+    ContactBook book{contactPairs, contactWorks, contactMost, contactEnded, contactGain, contactTaken};
+    book.turnPage(*forces, *scene, gravity, !started);
 }
 
 bool MembraneLedger::wantsEnergies(const Scene& now) const {
@@ -140,10 +159,19 @@ bool MembraneLedger::isUpToDate(const Scene& now) const {
 }
 
 Real MembraneLedger::crease() const {
-    return forces && forces->beta > 0. && forces->lastStep() >= 0 ? forces->creaseEnergy(forces->lastPositions()) : 0.;
+    if (!forces || !(forces->beta > 0.)) return 0.;
+    const vector<Vector3r> x = forces->lastPositions();
+    return x.empty() ? savedCrease : forces->creaseEnergy(x);
 }
 
 void MembraneLedger::preSave(MembraneLedger&) {
+    const StepGuard::Look look;
+    StepGuard::holdForSave();
+    fetch();
+}
+
+void MembraneLedger::fetch() {
+    savedCrease = crease();
     if (started && forces && forces->madeSums() != ::membrane::Sums::none) lastLengths = forces->sweep().lengths();
 }
 

@@ -13,8 +13,9 @@ public:
     bool wantsEnergies(const Scene& now) const;
     /// Whether the values are those of the step `now`.
     bool isUpToDate(const Scene& now) const;
-    /// Fetches what a saved ledger needs to go on.
     void preSave(MembraneLedger&);
+    /// Fetches into the attributes what a saved ledger needs to go on.
+    void fetch();
     Real balance() const;
     Real unexplained() const { return balance() - kinkError; }
     Real crease() const;
@@ -43,6 +44,9 @@ public:
         ((Real, dragWork, 0., Attr::readonly, "Work of the air drag [J], <= 0."))
         ((Real, drivenWork, 0., Attr::readonly, "Work that driven nodes do on the membrane [J]: the spool through the tethers' ends."))
         ((Real, contactWork, 0., Attr::readonly, "Work of all other forces on free nodes [J]: contact of the tethers with the spool."))
+        ((Real, contactGain, 0., Attr::readonly, "Energy [J] that the nodes' contacts gave to both bodies beyond what they had taken from them and may still have stored: "
+            "falls with friction, and rises only where contacts are too stiff for the time step, or were made overlapping."))
+        ((Real, contactTaken, 0., Attr::readonly, "Energy [J] that contacts had taken at most, each by itself."))
         ((Real, kinkError, 0., Attr::readonly, "Energy [J] that sides gained beyond the work of their mean forces, where they buckled or became taut within a step: the integrator's error."))
         ((Real, angularMomentum, 0., Attr::readonly, "Angular momentum of the free nodes and of a free hub about z [N m s]."))
         ((Real, angularImpulse, 0., Attr::readonly, "Integral of the torque about z of all forces on the free nodes and on a free hub [N m s]."))
@@ -54,20 +58,27 @@ public:
         ((Real, doneKinks, 0., (Attr::readonly | Attr::hidden), "kinkError up to the last step [J]."))
         ((bool, restless, false, (Attr::readonly | Attr::hidden), "The last step's works were large: a watch must not miss what comes."))
         ((Real, countedStep, 0., (Attr::readonly | Attr::hidden), "O.dt of the last step [s]."))
+        ((Real, savedCrease, 0., (Attr::readonly | Attr::hidden), "crease as of the last save [J]."))
+        ((vector<Vector2i>, contactPairs, , (Attr::readonly | Attr::hidden), "Node and other body of the contacts of the last step, in order."))
+        ((vector<Real>, contactWorks, , (Attr::readonly | Attr::hidden), "Work of each on both bodies since it began [J], up to half a step after the last one."))
+        ((Real, contactEnded, 0., (Attr::readonly | Attr::hidden), "Sum of the works of contacts that are over [J]."))
+        ((vector<Real>, contactMost, , (Attr::readonly | Attr::hidden), "What each has taken at most [J]."))
         ((vector<Real>, lastLengths, , (Attr::readonly | Attr::hidden), "Lengths of the sides [m] in the last step, as of the last save."))
         ,
         ,
-        .add_property("crease", &MembraneLedger::crease, "Energy stored in the creases [J]; with the law 'paper' and unequal heights only nearly minus creaseWork.")
-        .add_property("creaseDefect", &MembraneLedger::creaseDefect, "crease - initialCrease + creaseWork [J]: what creases gave beyond their energy. "
+        .add_property("crease", &Guarded<&MembraneLedger::crease>::call, "Energy stored in the creases [J]; with the law 'paper' and unequal heights only nearly minus creaseWork.")
+        .add_property("creaseDefect", &Guarded<&MembraneLedger::creaseDefect>::call, "crease - initialCrease + creaseWork [J]: what creases gave beyond their energy. "
             "The law 'paper' gives and takes where heights are unequal; an angle that jumps through its branch cut does too.")
         .add_property("total", &MembraneLedger::total, "kinetic + elastic + potential [J].")
-        .add_property("balance", &MembraneLedger::balance, "total - initial - all works [J]: 0 but for the error of the time step.")
-        .add_property("unexplained", &MembraneLedger::unexplained, "balance - kinkError [J]: the rest of the time step's error, and of the book-keeping.")
+        .add_property("balance", &Guarded<&MembraneLedger::balance>::call, "total - initial - all works [J]: 0 but for the error of the time step.")
+        .add_property("unexplained", &Guarded<&MembraneLedger::unexplained>::call, "balance - kinkError [J]: the rest of the time step's error, and of the book-keeping.")
     );
     // clang-format on
 
 private:
     long upToDate_ = -1; ///< step to which all values belong
+
+    void bookContacts();
 };
 REGISTER_SERIALIZABLE(MembraneLedger);
 

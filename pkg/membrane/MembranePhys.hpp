@@ -2,6 +2,7 @@
 #pragma once
 #include "Membrane.hpp"
 #include <core/Dispatching.hpp>
+#include <lib/factory/ClassFactory.hpp>
 #include <pkg/common/NormShearPhys.hpp>
 
 namespace yade {
@@ -9,6 +10,9 @@ namespace yade {
 /// Spring of one side. A NormShearPhys, since YADE's own analyses take every interaction for one.
 class MembranePhys : public NormShearPhys {
 public:
+    long computed = -1; ///< step in which the law last computed the side's force; -1: none yet
+    long checked = -1;  ///< step in which an engine of the membrane last asked for that; -1: none yet
+
     explicit MembranePhys(const ::membrane::Side& side) : MembranePhys() { set(side); }
     void set(const ::membrane::Side& side) {
         kn = side.stiffness;
@@ -37,11 +41,18 @@ public:
     void go(const shared_ptr<Material>&, const shared_ptr<Material>&, const shared_ptr<Interaction>& link) override;
     FUNCTOR2D(MembraneMat, MembraneMat);
     // clang-format off
-    YADE_CLASS_BASE_DOC_ATTRS(Ip2_MembraneMat_MembraneMat_MembranePhys, IPhysFunctor,
-        "Gives a side of the membrane its spring. Sides made by :yref:`Membrane.addInteractions` have it already.",
-        ((shared_ptr<Membrane>, membrane, , , "The membrane whose sides get springs."))
+    YADE_CLASS_BASE_DOC_ATTRS_CTOR(Ip2_MembraneMat_MembraneMat_MembranePhys, IPhysFunctor,
+        "Gives a side of a membrane its spring; sides made by :yref:`Membrane.addInteractions` have it already. Two bodies of film's material that are no "
+        "side, such as a node and a grain, are left to `contact`.",
+        ((shared_ptr<Membrane>, membrane, , , "Not needed: a node knows its membrane. Kept for scripts that give it."))
+        ((shared_ptr<IPhysFunctor>, contact, , , "What gives contacts of two such bodies their physics; default: YADE's Ip2_FrictMat_FrictMat_FrictPhys."))
+        ,
+        ordinaryContact_ = boost::dynamic_pointer_cast<IPhysFunctor>(ClassFactory::instance().createShared("Ip2_FrictMat_FrictMat_FrictPhys"));
     );
     // clang-format on
+
+private:
+    shared_ptr<IPhysFunctor> ordinaryContact_;
 };
 REGISTER_SERIALIZABLE(Ip2_MembraneMat_MembraneMat_MembranePhys);
 

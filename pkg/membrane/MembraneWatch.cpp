@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneWatch.hpp"
+#include "BodyAt.hpp"
 #include "FreeHub.hpp"
 #include "mechanics/Drag.hpp"
 #include "mechanics/SideForce.hpp"
 #include <algorithm>
 #include <cmath>
-#include <core/BodyContainer.hpp>
-#include <core/Scene.hpp>
+#include <core/Omega.hpp>
+#include <limits>
 #include <sstream>
 
 namespace yade {
@@ -15,8 +16,8 @@ YADE_PLUGIN((MembraneWatch));
 
 namespace {
 
-enum Part { sidesPart, creasesPart, dampingPart, dragPart, parts };
-const char* const partNames[] = {"the sides", "the creases", "damping", "air drag"};
+enum Part { sidesPart, creasesPart, dampingPart, dragPart, contactsPart, parts };
+const char* const partNames[] = {"the sides", "the creases", "damping", "air drag", "contacts"};
 
 /// Strain [-] of all sides whose energy counts as none: rounding must not stop a membrane at rest.
 constexpr Real noStrain = 1e-9;
@@ -32,9 +33,21 @@ std::string pairText(const Membrane& membrane, int a, int b) {
 } // namespace
 
 void MembraneWatch::postLoad(MembraneWatch&) {
+    const StepGuard::Look look;
     if (!(tolerance > 0.))
         throw std::invalid_argument("MembraneWatch: tolerance = " + std::to_string(tolerance) + " must be > 0");
     if (period <= 0) throw std::invalid_argument("MembraneWatch: period = " + std::to_string(period) + " must be > 0");
+    const auto checkLength = [](const char* name, std::size_t length, std::size_t unit, std::size_t most) {
+        if (length % unit != 0 || length / unit > most)
+            throw std::invalid_argument(string("MembraneWatch: ") + name + " has " + std::to_string(length) +
+                                        " entries, which no watch has kept");
+    };
+    constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
+    checkLength("lowest", lowest.size(), parts, 1);
+    checkLength("newerBodies", newerBodies.size(), numbersOfBody, any);
+    checkLength("olderBodies", olderBodies.size(), numbersOfBody, any);
+    checkLength("newerHub", newerHub.size(), 2, 1);
+    checkLength("olderHub", olderHub.size(), 2, 1);
     floor_ = 0.;
 }
 
@@ -47,22 +60,22 @@ void MembraneWatch::action() {
 
     const bool look = looked < 0 || scene->iter - looked >= period;
     const Real gave[parts] = {ledger->balance(), look ? ledger->creaseDefect() : 0., ledger->dampingWork,
-                              ledger->dragWork};
+                              ledger->dragWork, ledger->contactGain};
     if (lowest.empty()) lowest.assign(gave, gave + parts);
     peak = std::max(peak, ledger->kinetic + ledger->elastic + (look ? ledger->crease() : 0.));
-    const Real most = tolerance * (allEnergy() + floor_);
-    Real gain = 0.;
-    int worst = sidesPart;
+    Real worstShare = 0.; // of what it may give
     for (int part = 0; part < parts; ++part) {
         if (part == creasesPart && !look) continue;
         lowest[part] = std::min(lowest[part], gave[part]);
         const Real risen = gave[part] - lowest[part];
-        if (!(risen <= gain)) gain = risen, worst = part;
+        const Real all = allEnergy() + (part == contactsPart ? ledger->contactTaken : 0.);
+        const Real share = risen / (tolerance * (all + floor_));
+        if (!(share <= 1.)) stop(part, risen, all);
+        worstShare = std::max(worstShare, share);
     }
-    if (!(gain <= most)) stop(worst, gain);
     if (!look) return;
     looked = scene->iter;
-    if (gain <= 0.5 * most) keep();
+    if (worstShare <= 0.5) keep();
 }
 
 Real MembraneWatch::allEnergy() const {
@@ -76,8 +89,9 @@ void MembraneWatch::keep() {
     olderTime = newerTime;
     newerBodies.clear();
     ledger->forces->writeBack();
-    ledger->preSave(*ledger);
+    ledger->fetch();
     for (const auto& body : *scene->bodies) {
+        if (!body || !body->state) continue;
         const State& state = *body->state;
         newerBodies.push_back(body->id);
         for (const Vector3r& v : {Vector3r(state.pos), Vector3r(state.vel), Vector3r(state.angVel)})
@@ -93,6 +107,9 @@ void MembraneWatch::keep() {
 
 Real MembraneWatch::restore() {
     if (!newerLedger) throw std::runtime_error("MembraneWatch: no state was kept yet");
+    if (!ledger || !ledger->forces) throw std::runtime_error("MembraneWatch: ledger is not set, or has no forces");
+    const shared_ptr<Scene> current = Omega::instance().getScene(); // that of the engine may be gone
+    ledger->forces->given().bodies(*current);                       // refuses another one
     const vector<Real>& bodies = olderLedger ? olderBodies : newerBodies;
     const MembraneLedger& book = olderLedger ? *olderLedger : *newerLedger;
     const Real time = olderLedger ? olderTime : newerTime;
@@ -100,32 +117,34 @@ Real MembraneWatch::restore() {
     forces->writeBack();
     for (std::size_t at = 0; at + numbersOfBody <= bodies.size(); at += numbersOfBody) {
         const Real* const was = &bodies[at];
-        const auto id = static_cast<Body::id_t>(was[0]);
-        if (!scene->bodies->exists(id)) continue;
-        State& state = *(*scene->bodies)[id]->state;
+        // A number that is no id, as of a damaged file, has no body.
+        const bool isId = was[0] >= 0. && was[0] < static_cast<Real>(current->bodies->size());
+        const shared_ptr<Body> body = isId ? bodyAt(*current, static_cast<Body::id_t>(was[0])) : shared_ptr<Body>();
+        if (!body || !body->state) continue;
+        State& state = *body->state;
         state.pos = Vector3r(was + 1);
         state.vel = Vector3r(was + 4);
         state.angVel = Vector3r(was + 7);
         state.ori = Quaternionr(was + 10);
     }
     const vector<Real>& hubWas = olderLedger ? olderHub : newerHub;
-    if (FreeHub* hub = forces->hub(*scene); hub && hubWas.size() == 2) {
+    if (FreeHub* hub = forces->hub(*current); hub && hubWas.size() == 2) {
         hub->angle = hubWas[0];
         hub->spin = hubWas[1];
     }
     *ledger = book;
     ledger->forces = forces;
     forces->forgetLengths();
-    scene->time = time;
-    scene->subStep = -1; // the state lies between two steps, and not within the one that was stopped
-    scene->speed = 0.;   // of the computer; two saves of one state are to be the same
-    scene->forces.reset(scene->iter);
+    current->time = time;
+    current->subStep = -1; // the state lies between two steps, and not within the one that was stopped
+    current->speed = 0.;   // of the computer; two saves of one state are to be the same
+    current->forces.reset(current->iter);
     lowest.clear();
     looked = -1;
     return time;
 }
 
-void MembraneWatch::stop(int part, Real gain) const {
+void MembraneWatch::stop(int part, Real gain, Real all) const {
     MembraneForceEngine& forces = *ledger->forces;
     const Membrane& membrane = *forces.membrane;
     const ::membrane::Points x = forces.lastPositions();
@@ -143,6 +162,14 @@ void MembraneWatch::stop(int part, Real gain) const {
                 c.rest, law, ::membrane::creaseState(c.rest, x[c.a], x[c.b], x[c.c], x[c.d]).theta);
             if (!(energy <= most)) most = energy, where = "crease " + pairText(membrane, c.a, c.b);
         }
+    } else if (part == contactsPart) {
+        for (const NodeContact& contact : forces.contacts()) {
+            const Real strength = contact.force.norm();
+            if (!(strength <= most))
+                most = strength, where = "the contact of bodies #" + std::to_string(membrane.bodyIds[contact.node]) +
+                                         " and #" + std::to_string(contact.other);
+        }
+        if (where.empty()) where = "contacts that are over";
     } else if (part == dragPart) {
         vector<Real> weights(x.size(), 0.);
         for (const Vector3i& t : membrane.triangles) {
@@ -170,9 +197,9 @@ void MembraneWatch::stop(int part, Real gain) const {
     std::ostringstream message;
     message << "Membrane: the run went wrong at t = " << scene->time << " s, step " << scene->iter << ": "
             << partNames[part] << " gave " << gain << " J from nowhere, more than " << tolerance << " of all energy, "
-            << allEnergy() << " J; most of it at " << where << "; node " << fastest << " is the fastest, "
-            << v[fastest].norm() << " m/s. O.dt = " << scene->dt << " s, the critical time step is "
-            << forces.criticalTimeStep() << " s: try a shorter one";
+            << all << " J; most of it at " << where << "; node " << fastest << " is the fastest, " << v[fastest].norm()
+            << " m/s. O.dt = " << scene->dt << " s, the critical time step is " << forces.criticalTimeStep()
+            << " s: try a shorter one";
     throw std::runtime_error(message.str());
 }
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "SpoolRotation.hpp"
+#include "BodyAt.hpp"
 #include "RunEnd.hpp"
 #include <cmath>
-#include <core/BodyContainer.hpp>
-#include <core/Scene.hpp>
 
 namespace yade {
 
@@ -26,9 +25,9 @@ void SpoolRotation::action() {
 
 bool SpoolRotation::mayTouch() const {
     for (const int id : touching) {
-        const auto& body = Body::byId(id, scene);
+        const shared_ptr<Body> body = bodyAt(*scene, id);
         // Not "< reach": a position that is not a number may touch.
-        if (body && !(body->state->pos.head<2>().squaredNorm() >= reach * reach)) return true;
+        if (body && body->state && !(body->state->pos.head<2>().squaredNorm() >= reach * reach)) return true;
     }
     return false;
 }
@@ -40,8 +39,8 @@ void SpoolRotation::turnFacets(Real to) {
     const Quaternionr next(AngleAxisr(angularVelocity * scene->dt, axis));
     Real radius = 0.;
     for (const int id : ids) {
-        const auto& body = Body::byId(id, scene);
-        if (!body) continue;
+        const shared_ptr<Body> body = bodyAt(*scene, id);
+        if (!body || !body->state) continue;
         State& state = *body->state;
         state.pos = turn * state.pos;
         state.ori = (turn * state.ori).normalized();

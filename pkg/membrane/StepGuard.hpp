@@ -1,30 +1,55 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
-#include <atomic>
-#include <mutex>
-#include <thread>
 
 namespace yade {
 
-/// Lets a thread that only looks, as YADE's 3D view does, in between two steps of the thread that computes.
+/// One lock for all of the plugin that other threads can call while YADE runs a scene in the background, as Python and
+/// the 3D view do: they get in when the running step arrives at an engine of membrane forces, where all bodies are at
+/// the same time, or at once where nothing runs.
 class StepGuard {
 public:
-    /// To be kept while a step changes what others look at.
-    std::unique_lock<std::mutex> step() {
-        while (lookers_ > 0) std::this_thread::yield(); // a mutex is not fair: the next step would take it again
-        return std::unique_lock<std::mutex>(mutex_);
-    }
-    /// To be kept while looking; waits for the step under way.
-    std::unique_lock<std::mutex> look() {
-        ++lookers_;
-        std::unique_lock<std::mutex> held(mutex_);
-        --lookers_;
-        return held;
-    }
+    /// To be kept while an engine computes.
+    class Step {
+    public:
+        Step();
+        ~Step();
+        Step(const Step&) = delete;
+        Step& operator=(const Step&) = delete;
+    };
 
-private:
-    std::mutex mutex_;
-    std::atomic<int> lookers_{0};
+    /// To be kept while looking, or changing what steps look at. Does nothing in the thread that steps.
+    class Look {
+    public:
+        /// \param between waits for the place between two steps; false: only until no engine computes
+        explicit Look(bool between = true);
+        ~Look();
+        Look(const Look&) = delete;
+        Look& operator=(const Look&) = delete;
+
+    private:
+        bool holds_;
+    };
+
+    /// Keeps the running step where it is until this thread gives up Python's lock: while a scene is being saved.
+    static void holdForSave();
+    /// Whether a scene is running in another thread.
+    static bool othersRun();
+};
+
+/// A member function behind a StepGuard::Look, to be called from Python.
+template <auto member> struct Guarded;
+template <class Class, class Result, class... Arguments, Result (Class::*member)(Arguments...)> struct Guarded<member> {
+    static Result call(Class& object, Arguments... arguments) {
+        const StepGuard::Look look;
+        return (object.*member)(arguments...);
+    }
+};
+template <class Class, class Result, class... Arguments, Result (Class::*member)(Arguments...) const>
+struct Guarded<member> {
+    static Result call(const Class& object, Arguments... arguments) {
+        const StepGuard::Look look;
+        return (object.*member)(arguments...);
+    }
 };
 
 } // namespace yade

@@ -10,6 +10,7 @@ The building blocks of scenes are modules of this package: `mesh`, `fold`, `spoo
 from . import _load
 
 _classes = _load.load()
+_classes.update({alias: _classes[name] for alias, name in _load.ALIASES.items()})
 globals().update(_classes)
 __version__ = _load.VERSION
 __all__ = sorted(_classes)

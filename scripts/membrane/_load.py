@@ -10,8 +10,9 @@ VERSION = "0.1.0"
 CLASSES = (
     "MembraneMat",
     "Membrane",
+    "MembraneNode",
     "MembraneGeom",
-    "Ig2_Sphere_Sphere_MembraneGeom",
+    "Ig2_MembraneNode_MembraneNode_MembraneGeom",
     "MembranePhys",
     "Ip2_MembraneMat_MembraneMat_MembranePhys",
     "Law2_MembraneGeom_MembranePhys_Buckling",
@@ -23,7 +24,10 @@ CLASSES = (
     "MembraneLedger",
     "MembraneTimeStepper",
     "MembraneWatch",
+    "MembraneFault",
 )
+# Under names of earlier versions, for scripts that use them.
+ALIASES = {"Ig2_Sphere_Sphere_MembraneGeom": "Ig2_MembraneNode_MembraneNode_MembraneGeom"}
 DRAWERS = ("GlExtra_Membrane",)  # only where YADE has its 3D view
 
 
@@ -41,6 +45,8 @@ def load():
         native = importlib.import_module("._membrane", __package__)
         check_layout(native, wrapper)
         native.register_classes(list(names))
+        for alias, name in ALIASES.items():
+            setattr(wrapper, alias, getattr(wrapper, name))
     return {name: getattr(wrapper, name) for name in names}
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from yade import wrapper as yade
 
-from . import _load, hub, spool
+from . import _load, contacts, hub, spool
 from .progress import stages
 
 LARGE = 100_000  # nodes: adding so many takes about a second, so that progress is shown
@@ -16,6 +16,7 @@ PATHS = ("law2", "fused")
 NODE_MASK = 1 << 29  # of nodes of a MembraneIntegrator
 # What NewtonIntegrator moves: all but facets of the spool and nodes of a MembraneIntegrator.
 INTEGRATED = NODE_MASK - 1 - spool.SPOOL_MASK
+TOUCHING_MASK = NODE_MASK - 1  # of nodes that touch other bodies: they touch whatever has a mask
 
 LEDGER_PERIOD = 20  # at most so many steps between two looks at all energies
 
@@ -223,7 +224,9 @@ def set_engines(
     driven : sequence of int
         Ids of bodies that turn about z: spool facets, ends of tethers.
     touching : sequence of int
-        Ids of the membrane's bodies that touch other bodies; empty: no collider at all.
+        Ids of the membrane's bodies that touch other bodies: any sphere, facet, wall or box of
+        material FrictMat, now or later, by YADE's usual contact. Nodes do not touch one another.
+        Empty: no collider at all.
     omega : float
         Rate at which the driven bodies turn [rad/s].
     hub_inertia : float, optional
@@ -252,7 +255,7 @@ def set_engines(
     Raises
     ------
     ValueError
-        Naming the argument, if one is out of range.
+        Naming the argument, if one is out of range, or the body that could not be touched.
     """
     if path not in PATHS:
         raise ValueError(f"set_engines: path = {path!r} must be one of {', '.join(PATHS)}")
@@ -271,6 +274,7 @@ def set_engines(
         **own,
     )
     geometry, physics, laws, collider = [], [], [], []
+    others = sorted({body.id for body in scene.bodies}.difference(membrane.bodyIds))
     if fused:
         membrane.removeInteractions()
     else:
@@ -279,14 +283,16 @@ def set_engines(
         for body in (scene.bodies[i] for i in membrane.bodyIds):
             if body.mask == NODE_MASK:  # a MembraneIntegrator had them
                 body.mask = 1
-        geometry = [_plugin["Ig2_Sphere_Sphere_MembraneGeom"]()]
+        geometry = [_plugin["Ig2_MembraneNode_MembraneNode_MembraneGeom"]()]
         physics = [_plugin["Ip2_MembraneMat_MembraneMat_MembranePhys"](membrane=membrane)]
         laws = [_plugin["Law2_MembraneGeom_MembranePhys_Buckling"]()]
     if touching:
+        contacts.check(others, INTEGRATED)
         for body in (scene.bodies[i] for i in touching):
-            body.bounded, body.mask = True, spool.TETHER_MASK
-        collider = [_collider()]
-        geometry.append(yade.Ig2_Facet_Sphere_ScGeom())
+            body.bounded, body.mask = True, TOUCHING_MASK
+        collider = [contacts.collider(TOUCHING_MASK)]
+        node_pairs = _plugin["Ig2_MembraneNode_MembraneNode_MembraneGeom"]
+        geometry = [*contacts.geometry(), node_pairs()]
         physics.append(yade.Ip2_FrictMat_FrictMat_FrictPhys())
         # A facet's torque must be that about its place: a FreeHub takes it.
         laws.append(yade.Law2_ScGeom_FrictPhys_CundallStrack(sphericalBodies=False))
@@ -311,8 +317,7 @@ def set_engines(
         forces=forces, gravity=gravity, period=min(exchange_period, LEDGER_PERIOD) if fused else 1
     )
     # With no other body that moves, a fused membrane needs none of YADE's loops over bodies.
-    others = len(scene.bodies) - len(membrane.bodyIds) - len(facets)
-    newton.dead = fused and not others
+    newton.dead = fused and not set(others).difference(facets)
     resetter = yade.ForceResetter(dead=newton.dead and not laws)
     watch = []
     if energy_tolerance is not None:
@@ -345,16 +350,6 @@ def set_engines(
     )
 
 
-def _collider():
-    """The collider of tethers and spool."""
-    return yade.InsertionSortCollider(
-        [yade.Bo1_Sphere_Aabb(), yade.Bo1_Facet_Aabb()],
-        verletDist=spool.VERLET_DISTANCE,
-        targetInterv=-1,
-        avoidSelfInteractionMask=spool.NO_SELF_CONTACT,
-    )
-
-
 def renew_collider():
     """Put a new collider in the place of the one that `set_engines` made, if any.
 
@@ -362,7 +357,9 @@ def renew_collider():
     """
     omega = yade.Omega()
     old = yade.InsertionSortCollider
-    omega.engines = [_collider() if isinstance(e, old) else e for e in omega.engines]
+    omega.engines = [
+        contacts.collider(TOUCHING_MASK) if isinstance(e, old) else e for e in omega.engines
+    ]
 
 
 def loaded():

@@ -6,13 +6,7 @@ from math import cos, hypot, pi, sin
 from yade import utils
 from yade.wrapper import FrictMat, Omega
 
-# A body collides with the spool if its mask has SPOOL_MASK. NewtonIntegrator leaves alone bodies
-# that have no other bit: the facets, which SpoolRotation moves.
-SPOOL_MASK = 1 << 28
-TETHER_MASK = SPOOL_MASK | 1 << 27
-# Bodies of one and the same mask that share a bit with this one do not collide with one another:
-# neither tether masses nor facets.
-NO_SELF_CONTACT = TETHER_MASK
+SPOOL_MASK = 1 << 28  # of the facets, which SpoolRotation moves: NewtonIntegrator leaves them alone
 COLOUR = (0.45, 0.48, 0.55)  # else YADE draws one by lot
 VERLET_DISTANCE = 2e-3  # of the collider [m]
 

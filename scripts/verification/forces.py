@@ -128,7 +128,7 @@ class StandingSail:
         )
         self.states = [self.omega.bodies[i].state for i in self.net.bodyIds]
         self.loop = yade.InteractionLoop(
-            [membrane.Ig2_Sphere_Sphere_MembraneGeom()],
+            [membrane.Ig2_MembraneNode_MembraneNode_MembraneGeom()],
             [membrane.Ip2_MembraneMat_MembraneMat_MembranePhys(membrane=self.net)],
             [membrane.Law2_MembraneGeom_MembranePhys_Buckling()],
         )

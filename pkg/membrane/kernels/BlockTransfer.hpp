@@ -40,11 +40,11 @@ inline void clearPadding(const Block& block, BlockVectors& value) {
 
 /// to += sign * value on one corner of each element; the padding's value must be 0.
 template <int sign>
-inline void addToCorner(const Block& block, const BlockVectors& value, const int* node, const Components& to) {
+inline void addToCorner(const Block& block, const BlockVectors& value, const int* node, const Window& to) {
     const double *const x = value.component[0], *const y = value.component[1], *const z = value.component[2];
     if (block.run) {
         const int padded = block.paddedCount();
-        const Components target = to + node[0];
+        const Components target = to.from(node[0]);
 #pragma GCC ivdep
         for (int e = 0; e < padded; ++e) {
             target.x[e] += sign * x[e];
@@ -52,17 +52,19 @@ inline void addToCorner(const Block& block, const BlockVectors& value, const int
             target.z[e] += sign * z[e];
         }
     } else {
+        const Components target = to.values;
+        const long first = to.first;
         for (int e = 0; e < block.count(); ++e) {
-            to.x[node[e]] += sign * x[e];
-            to.y[node[e]] += sign * y[e];
-            to.z[node[e]] += sign * z[e];
+            target.x[node[e] - first] += sign * x[e];
+            target.y[node[e] - first] += sign * y[e];
+            target.z[node[e] - first] += sign * z[e];
         }
     }
 }
-inline void addCorner(const Block& block, const BlockVectors& value, const int* node, const Components& to) {
+inline void addCorner(const Block& block, const BlockVectors& value, const int* node, const Window& to) {
     addToCorner<1>(block, value, node, to);
 }
-inline void subtractCorner(const Block& block, const BlockVectors& value, const int* node, const Components& to) {
+inline void subtractCorner(const Block& block, const BlockVectors& value, const int* node, const Window& to) {
     addToCorner<-1>(block, value, node, to);
 }
 

@@ -33,13 +33,12 @@ struct Coordinates {
     }
 };
 
-/// The three arrays of some Coordinates, or none. `first` is the node of index 0 in a window of all nodes.
+/// The three arrays of some Coordinates, or none.
 struct Components {
     double *x = nullptr, *y = nullptr, *z = nullptr;
 
     Components() = default;
-    explicit Components(Coordinates& c, long first = 0)
-        : x(c.x.data() - first), y(c.y.data() - first), z(c.z.data() - first) {}
+    explicit Components(Coordinates& c) : x(c.x.data()), y(c.y.data()), z(c.z.data()) {}
     Components operator+(long offset) const {
         Components moved;
         moved.x = x + offset;
@@ -58,6 +57,18 @@ struct Components {
         y[i] += v[1];
         z[i] += v[2];
     }
+};
+
+/// Where forces are added: on all nodes, on those from `first` on, or nowhere.
+struct Window {
+    Components values; ///< of the node `first` and those that follow
+    long first = 0;
+
+    Window() = default;
+    explicit Window(Coordinates& c, long firstNode = 0) : values(c), first(firstNode) {}
+    bool isThere() const { return values.x; }
+    Components from(long node) const { return values + (node - first); }
+    void add(long node, const Eigen::Vector3d& v) const { values.add(node - first, v); }
 };
 
 } // namespace membrane

@@ -39,7 +39,7 @@ inline void compute(int padded, const Components (&x)[4], const Constants& c, co
 
 template <bool conservative>
 inline void addBlocks(const CreaseTable& table, const CreaseLaw& law, int group, const Components& x,
-                      const Components& to) {
+                      const Window& to) {
     BlockVectors room[4], force[4];
     for (int i = table.order.groups[group]; i < table.order.groups[group + 1]; ++i) {
         const Block block = table.order.blocks[i];
@@ -58,11 +58,11 @@ inline void addBlocks(const CreaseTable& table, const CreaseLaw& law, int group,
 }
 
 MEMBRANE_VECTORISED void paperCreases(const CreaseTable& table, const CreaseLaw& law, int group, const Components& x,
-                                      const Components& to) {
+                                      const Window& to) {
     addBlocks<false>(table, law, group, x, to);
 }
 MEMBRANE_VECTORISED void conservativeCreases(const CreaseTable& table, const CreaseLaw& law, int group,
-                                             const Components& x, const Components& to) {
+                                             const Components& x, const Window& to) {
     addBlocks<true>(table, law, group, x, to);
 }
 
@@ -86,7 +86,7 @@ CreaseTable creaseTable(const RestState& rest, const Partition& partition) {
     return table;
 }
 
-void addCreases(const CreaseTable& table, const CreaseLaw& law, int group, const Components& x, const Components& to) {
+void addCreases(const CreaseTable& table, const CreaseLaw& law, int group, const Components& x, const Window& to) {
     (law.conservative ? conservativeCreases : paperCreases)(table, law, group, x, to);
 }
 

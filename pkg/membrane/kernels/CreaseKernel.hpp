@@ -16,6 +16,6 @@ struct CreaseTable {
 CreaseTable creaseTable(const RestState& rest, const Partition& partition);
 
 /// Adds the forces (7), (8) of a group's creases [N], at positions `x` [m].
-void addCreases(const CreaseTable& table, const CreaseLaw& law, int group, const Components& x, const Components& to);
+void addCreases(const CreaseTable& table, const CreaseLaw& law, int group, const Components& x, const Window& to);
 
 } // namespace membrane

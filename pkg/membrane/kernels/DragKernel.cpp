@@ -31,7 +31,7 @@ DragTable dragTable(const std::vector<Eigen::Vector3i>& triangles, const Partiti
 }
 
 MEMBRANE_VECTORISED void addDragWeights(const DragTable& table, int group, const Components& x, const Components& u,
-                                        double* weight) {
+                                        const WeightWindow& to) {
     BlockVectors roomX[3], roomU[3];
     double added[3][blockSize];
     for (int i = table.order.groups[group]; i < table.order.groups[group + 1]; ++i) {
@@ -46,12 +46,12 @@ MEMBRANE_VECTORISED void addDragWeights(const DragTable& table, int group, const
         for (int k = 0; k < 3; ++k) {
             clearPadding(block, added[k]);
             if (block.run) {
-                double* const target = weight + node[k][0];
+                double* const target = to.values + (node[k][0] - to.first);
                 const int padded = block.paddedCount();
 #pragma GCC ivdep
                 for (int e = 0; e < padded; ++e) target[e] += added[k][e];
             } else {
-                for (int e = 0; e < block.count(); ++e) weight[node[k][e]] += added[k][e];
+                for (int e = 0; e < block.count(); ++e) to.values[node[k][e] - to.first] += added[k][e];
             }
         }
     }

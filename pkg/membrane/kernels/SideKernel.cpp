@@ -127,13 +127,13 @@ MEMBRANE_SIDES(apartWithEnergies, Wanted::apart, Sums::energies)
 #undef MEMBRANE_SIDES
 
 SideEnergy addFilm(SideTable& table, int group, const SideJob& job) {
-    const bool elastic = job.elastic.x, damped = job.damping.x;
+    const bool elastic = job.elastic.isThere(), damped = job.damping.isThere();
     if (!elastic) return brakes(table, group, job);
     const auto fitting = [&](auto none, auto works, auto energies) {
         return job.sums == Sums::none ? none : job.sums == Sums::works ? works : energies;
     };
     if (!damped) return fitting(springs, springsWithWorks, springsWithEnergies)(table, group, job);
-    if (job.sums == Sums::none && job.elastic.x == job.damping.x) return together(table, group, job);
+    if (job.sums == Sums::none && job.elastic.values.x == job.damping.values.x) return together(table, group, job);
     return fitting(apart, apartWithWorks, apartWithEnergies)(table, group, job);
 }
 
@@ -200,7 +200,7 @@ SideTable sideTable(const RestState& rest, const std::vector<double>& damping, c
 
 SideEnergy addSides(SideTable& table, const RestState& rest, const std::vector<double>& damping, int group,
                     const SideJob& job) {
-    const bool elastic = job.elastic.x, damped = job.damping.x;
+    const bool elastic = job.elastic.isThere(), damped = job.damping.isThere();
     if (!elastic && !damped) return {};
     SideEnergy sum = addFilm(table, group, job);
     for (int i = table.cableGroups[group]; i < table.cableGroups[group + 1]; ++i) {

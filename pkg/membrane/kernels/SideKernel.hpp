@@ -25,8 +25,8 @@ struct SideTable {
 struct SideJob {
     Components x;           ///< positions [m]
     Components u;           ///< velocities [m/s] at the time of the positions; not needed without damping
-    Components elastic;     ///< forces (3), (6) [N]; none: not wanted
-    Components damping;     ///< forces (9) [N]; none: no damping; may be the same arrays as `elastic`
+    Window elastic;         ///< forces (3), (6) [N]; nowhere: not wanted
+    Window damping;         ///< forces (9) [N]; nowhere: no damping; may be the same arrays as `elastic`
     Sums sums = Sums::none; ///< other than none: keep the lengths
     Prefetch* prefetch = nullptr;
 };

@@ -86,6 +86,17 @@ void Sweep::makeBorders() {
     }
 }
 
+/// Room for the forces of damping and creases by themselves; made before threads begin, which must not throw.
+void Sweep::keepApart() {
+    if (damping_.size()) return;
+    damping_.assign(x.size());
+    crease_.assign(x.size());
+    for (Border& border : borders_) {
+        border.damping.assign(border.last - border.first);
+        border.crease.assign(border.last - border.first);
+    }
+}
+
 void Sweep::makeReach() {
     constexpr int cached = 8192; // so many nodes with all their arrays stay in the second-level cache
     reach_.clear();
@@ -130,15 +141,15 @@ void Sweep::computeBorder(int part, const SweepStep& now) {
     if (border.first == border.last) return;
     Targets to;
     setZero(border.elastic);
-    to.elastic = to.damping = to.crease = Components(border.elastic, border.first);
+    to.elastic = to.damping = to.crease = Window(border.elastic, border.first);
     if (now.apart) {
-        border.damping.assign(border.last - border.first);
-        border.crease.assign(border.last - border.first);
-        to.damping = Components(border.damping, border.first);
-        to.crease = Components(border.crease, border.first);
+        setZero(border.damping);
+        setZero(border.crease);
+        to.damping = Window(border.damping, border.first);
+        to.crease = Window(border.crease, border.first);
     }
     std::fill(border.dragWeight.begin(), border.dragWeight.end(), 0.);
-    to.dragWeight = border.dragWeight.empty() ? nullptr : border.dragWeight.data() - border.first;
+    if (!border.dragWeight.empty()) to.dragWeight = {border.dragWeight.data(), border.first};
     partSums_[part].energy = addGroup(part, to, now, nullptr);
 }
 
@@ -159,21 +170,21 @@ void Sweep::addBorders(int part, bool apart) {
 void Sweep::sweepPart(int part, const SweepStep& now) {
     PartSums& sums = partSums_[part];
     Targets to;
-    to.elastic = to.damping = to.crease = Components(elastic_);
+    to.elastic = to.damping = to.crease = Window(elastic_);
     if (now.apart) {
-        to.damping = Components(damping_);
-        to.crease = Components(crease_);
+        to.damping = Window(damping_);
+        to.crease = Window(crease_);
     }
-    to.dragWeight = dragWeight_.empty() ? nullptr : dragWeight_.data();
+    if (!dragWeight_.empty()) to.dragWeight = {dragWeight_.data(), 0};
 
     Motion motion;
     motion.x = Components(x);
     motion.v = Components(v);
     motion.u = Components(u);
-    motion.elastic = to.elastic;
-    motion.damping = to.damping;
-    motion.crease = to.crease;
-    motion.dragWeight = to.dragWeight;
+    motion.elastic = to.elastic.values;
+    motion.damping = to.damping.values;
+    motion.crease = to.crease.values;
+    motion.dragWeight = to.dragWeight.values;
     motion.mass = mass_.data();
     motion.dt = now.dt;
     motion.airDensity = laws_.airDensity;
@@ -202,10 +213,7 @@ void Sweep::sweepPart(int part, const SweepStep& now) {
 }
 
 bool Sweep::step(const SweepStep& now) {
-    if (now.apart && !damping_.size()) {
-        damping_.assign(x.size());
-        crease_.assign(x.size());
-    }
+    if (now.apart) keepApart();
     // A step that moves leaves no force on the nodes that it owns.
     if (moved_)
         for (const int node : foreign_) clearForces(node);
@@ -228,7 +236,7 @@ bool Sweep::step(const SweepStep& now) {
         partSums_[0] = {};
         sweepPart(0, now);
     } else {
-#pragma omp parallel num_threads(parts)
+#pragma omp parallel num_threads(std::min(parts, omp_get_num_procs()))
         {
             for (int p = omp_get_thread_num(); p < parts; p += omp_get_num_threads()) computeBorder(p, now);
 #pragma omp barrier

@@ -106,8 +106,8 @@ private:
     void clearForces();
     void clearForces(int node);
     struct Targets {
-        Components elastic, damping, crease;
-        double* dragWeight;
+        Window elastic, damping, crease;
+        WeightWindow dragWeight;
     };
     SideEnergy addGroup(int group, const Targets& to, const SweepStep& now, Prefetch* prefetch);
     void prefetchAfter(int chunk, int part, Prefetch& prefetch);
@@ -115,6 +115,7 @@ private:
     void addBorders(int part, bool apart);
     void sweepPart(int part, const SweepStep& now);
     void makeBorders();
+    void keepApart();
     void makeReach();
 };
 

@@ -86,13 +86,19 @@ double exactTimeStep(const LinearForces& forces) {
     return eigenvalue > 0. ? bound.step * std::sqrt(4. / eigenvalue) : infinity;
 }
 
+/// The longest step of what moves beside the nodes.
+double stepBeside(const TimeStepInput& input) {
+    return input.beside > 0. ? 2. / std::sqrt(input.beside) : infinity;
+}
+
 } // namespace
 
 double criticalTimeStep(const TimeStepInput& input) {
-    return margin * exactTimeStep(linearForces(input));
+    return margin * std::min(exactTimeStep(linearForces(input)), stepBeside(input));
 }
 
 bool withinCriticalTimeStep(const TimeStepInput& input, double dt) {
+    if (!(dt <= margin * stepBeside(input))) return false;
     const LinearForces forces = linearForces(input);
     return dt <= margin * timeStepBound(forces).step || dt <= margin * exactTimeStep(forces);
 }

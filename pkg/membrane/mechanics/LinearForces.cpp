@@ -65,6 +65,7 @@ LinearForces linearForces(const TimeStepInput& in) {
         for (const Crease& c : in.rest.creases) forces.creases.push_back(stiffCrease(in, c));
     }
     forces.drag = in.drag;
+    if (in.ground) forces.ground = *in.ground;
     forces.inverseRoot.reserve(in.masses.size());
     for (const double mass : in.masses) forces.inverseRoot.push_back(mass > 0. ? 1. / std::sqrt(mass) : 0.);
     const auto positive = [](double c) { return c > 0.; };
@@ -104,6 +105,7 @@ void addProduct(const LinearForces& forces, double k, double c, const NodeVector
         y[e.b] -= e.footC * forceC + e.footD * forceD;
     }
     for (std::size_t i = 0; i < forces.drag.size(); ++i) y[i] += (c * forces.drag[i]) * x[i];
+    for (std::size_t i = 0; i < forces.ground.size(); ++i) y[i] += (k * forces.ground[i]) * x[i];
 }
 
 } // namespace membrane

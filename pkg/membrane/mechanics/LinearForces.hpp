@@ -8,11 +8,13 @@ namespace membrane {
 /// What the forces on a membrane depend on besides its sides.
 struct TimeStepInput {
     const RestState& rest;
-    const std::vector<double>& masses;  ///< actual masses [kg]; a node that cannot move has 0
-    const Points& positions;            ///< current positions [m]
-    const std::vector<double>& damping; ///< c of each side [N s/m], or empty
-    const std::vector<double>& drag;    ///< of each node, the same in all directions [N s/m], or empty
-    CreaseLaw crease;                   ///< bending = 0: no creases
+    const std::vector<double>& masses;           ///< actual masses [kg]; a node that cannot move has 0
+    const Points& positions;                     ///< current positions [m]
+    const std::vector<double>& damping;          ///< c of each side [N s/m], or empty
+    const std::vector<double>& drag;             ///< of each node, the same in all directions [N s/m], or empty
+    CreaseLaw crease;                            ///< bending = 0: no creases
+    const std::vector<double>* ground = nullptr; ///< springs of each node to places at rest [N/m]; null or empty: none
+    double beside = 0.; ///< square of the fastest frequency of what else moves with the nodes [1/s²]; 0: nothing
 };
 
 /// A side as if taut.
@@ -41,6 +43,7 @@ struct LinearForces {
     std::vector<TautSide> sides; ///< in the order of the rest state
     std::vector<StiffCrease> creases;
     std::vector<double> drag;        ///< as in the input
+    std::vector<double> ground;      ///< as in the input
     std::vector<double> inverseRoot; ///< of each node, 1/sqrt(mass); 0: cannot move
     bool damped;                     ///< C is not 0
 };

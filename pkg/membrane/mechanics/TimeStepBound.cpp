@@ -87,7 +87,7 @@ Rows ownNorms(const LinearForces& forces) {
     }
     Rows norms{std::vector<double>(n), std::vector<double>(n)};
     for (std::size_t i = 0; i < n; ++i) {
-        norms.k[i] = k[i].norm();
+        norms.k[i] = k[i].norm() + (forces.ground.empty() ? 0. : forces.ground[i]);
         if (forces.damped) norms.c[i] = c[i].norm() + (forces.drag.empty() ? 0. : forces.drag[i]);
     }
     return norms;

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "StepGuard.hpp"
+#include <chrono>
+#include <condition_variable>
+#include <core/Omega.hpp>
+#include <mutex>
+#include <thread>
+
+namespace yade {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::mutex guard;
+std::condition_variable changed;
+std::thread::id computing;      ///< the thread in whose engine a step is, if any
+Clock::time_point lastArrival;  ///< when a step last arrived at an engine
+Clock::duration betweenSteps{}; ///< time between the last two arrivals
+int lookers = 0;                ///< who look or wait to
+bool looking = false;
+bool parked = false; ///< a step waits for the lookers
+bool saving = false; ///< the next step to arrive waits for Python's lock
+
+thread_local bool runsScene = false; ///< this thread was made by YADE to run a scene
+
+/// Gives up Python's lock for its lifetime, if this thread has it: whom we wait for may need it.
+class WithoutPython {
+public:
+    WithoutPython() : state_(PyGILState_Check() ? PyEval_SaveThread() : nullptr) {}
+    ~WithoutPython() {
+        if (state_) PyEval_RestoreThread(state_);
+    }
+
+private:
+    PyThreadState* state_;
+};
+
+} // namespace
+
+StepGuard::Step::Step() {
+    std::unique_lock<std::mutex> lock(guard);
+    if (Omega::instance().isRunning() && !PyGILState_Check()) runsScene = true;
+    const auto now = Clock::now();
+    betweenSteps = now - lastArrival;
+    lastArrival = now;
+    while (lookers > 0 || (saving && !PyGILState_Check())) {
+        parked = true;
+        changed.notify_all();
+        lock.unlock();
+        {
+            const WithoutPython without;
+            lock.lock();
+            changed.wait(lock, [] { return lookers == 0; });
+            lock.unlock();
+        }
+        if (saving && !PyGILState_Check()) {
+            const auto state = PyGILState_Ensure(); // which the thread that saves has until it is done
+            saving = false;
+            PyGILState_Release(state);
+        }
+        lock.lock();
+    }
+    parked = false;
+    computing = std::this_thread::get_id();
+}
+
+StepGuard::Step::~Step() {
+    {
+        const std::lock_guard<std::mutex> lock(guard);
+        computing = std::thread::id();
+    }
+    changed.notify_all();
+}
+
+StepGuard::Look::Look(bool between) : holds_(false) {
+    if (runsScene) return;
+    {
+        const std::lock_guard<std::mutex> lock(guard);
+        if (computing == std::this_thread::get_id()) return;
+        ++lookers; // before Python's lock is given up, which a step may wait for
+    }
+    const WithoutPython without;
+    std::unique_lock<std::mutex> lock(guard);
+    // A step that never arrives, for another engine keeps it or none of ours is there, must not be waited for.
+    const auto patience = Clock::now() + std::max<Clock::duration>(std::chrono::seconds(1), 3 * betweenSteps);
+    const auto comesIn = [&] {
+        const bool inPlace = !between || parked || !Omega::instance().isRunning() || Clock::now() > patience;
+        return !looking && computing == std::thread::id() && inPlace;
+    };
+    while (!comesIn()) changed.wait_for(lock, std::chrono::milliseconds(5)); // the end of a run tells nobody
+    looking = holds_ = true;
+}
+
+StepGuard::Look::~Look() {
+    if (!holds_) return;
+    {
+        const std::lock_guard<std::mutex> lock(guard);
+        looking = false;
+        --lookers;
+    }
+    changed.notify_all();
+}
+
+bool StepGuard::othersRun() {
+    return !runsScene && Omega::instance().isRunning();
+}
+
+void StepGuard::holdForSave() {
+    if (!othersRun()) return;
+    const std::lock_guard<std::mutex> lock(guard);
+    saving = true;
+}
+
+} // namespace yade
