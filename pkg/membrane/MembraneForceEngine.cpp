@@ -66,6 +66,10 @@ void MembraneForceEngine::postLoad(MembraneForceEngine&) {
 
 /// What was computed for another membrane.
 void MembraneForceEngine::forget() {
+    if (preparedMembrane_) { // else they are those of a saved engine, which is to go on
+        seenPositions.clear();
+        seenVelocities.clear();
+    }
     preparedMembrane_.reset();
     lastStep_ = -1;
     madeSums_ = ::membrane::Sums::none;
@@ -99,6 +103,7 @@ void MembraneForceEngine::action() {
         step();
     } catch (...) {
         writeBack();
+        scene->forces.sync(); // else what was added so far would be added to the next step's, too
         throw;
     }
 }
@@ -106,6 +111,7 @@ void MembraneForceEngine::action() {
 void MembraneForceEngine::step() {
     MembraneFault::raise(*scene);
     if (!isPreparedFor(*scene) || !membrane || preparedVersion_ != membrane->version()) {
+        checkKnown();
         try {
             prepare(*scene);
         } catch (...) {
@@ -115,16 +121,25 @@ void MembraneForceEngine::step() {
         checkedStep_ = -1.;
         checkedContacts_ = 0.;
         preparedFor_.set(*scene);
+        begunIn_.set(*scene);
         preparedMembrane_ = membrane;
         preparedVersion_ = membrane->version();
     }
-    surroundings_.check(*this, *scene, takesInteractions(), left_);
-    gather();
+    // A step that is refused must leave no trace: what is gathered counts as the step before.
+    checkSurroundings();
     if (takesInteractions()) checkSides();
     findContacts();
     if (scene->dt != checkedStep_ || scene->iter % timeStepCheckPeriod == 0) checkTimeStep();
+    gather();
     computeForces();
     lastStep_ = scene->iter;
+}
+
+/// What nodes must not become is refused also where other parameters let the engine begin anew.
+void MembraneForceEngine::checkKnown() const {
+    if (!membrane || preparedMembrane_ != membrane || preparedVersion_ != membrane->version() || !begunIn_.is(scene))
+        return;
+    for (const int i : allNodes_) checkNode(i);
 }
 
 void MembraneForceEngine::prepare(Scene& now) {
@@ -163,8 +178,9 @@ void MembraneForceEngine::checkNode(int node) const {
     if (!same) throw std::runtime_error(which + " was erased or replaced since its forces are computed");
     std::ostringstream message;
     message << which << ": its mass was changed from " << masses_[node] << " to " << states_[node]->mass
-            << " kg since its forces are computed; give pointMasses to a new membrane, or set `membrane` of the engine "
-               "again to go on with that mass";
+            << " kg since its forces are computed; give pointMasses to a new membrane, or set the engine's membrane to "
+               "None "
+               "and back to go on with that mass";
     throw std::runtime_error(message.str());
 }
 
@@ -218,6 +234,10 @@ void MembraneForceEngine::stopDiverged() const {
                              ") has a position or velocity that is not finite");
 }
 
+void MembraneForceEngine::checkSurroundings() {
+    surroundings_.check(*this, *scene, takesInteractions(), left_);
+}
+
 void MembraneForceEngine::checkSides() {
     const auto computed = [&](const shared_ptr<MembranePhys>& phys) {
         if (!phys || phys->computed != scene->iter) return false;
@@ -249,6 +269,7 @@ void MembraneForceEngine::findSides() {
 
 void MembraneForceEngine::refuseSide(std::size_t number) const {
     const ::membrane::Side& side = membrane->rest().sides[number];
+    for (const int node : {side.a, side.b}) checkNode(node); // which may be why
     const string a = std::to_string(side.a), b = std::to_string(side.b);
     const string which = "Membrane: side " + a + "-" + b + " (bodies #" + std::to_string(membrane->bodyIds[side.a]) +
                          " and #" + std::to_string(membrane->bodyIds[side.b]) + ")";
@@ -315,6 +336,8 @@ void MembraneForceEngine::checkTimeStep() {
     if (forceTimeStep) return;
     writeBack();
     TimeStepState now = timeStepState(*scene, bodies_, contacts_);
+    const auto isFinite = [](const Vector3r& x) { return x.allFinite(); };
+    if (!std::all_of(now.positions.begin(), now.positions.end(), isFinite)) return; // gather() tells
     if (::membrane::withinCriticalTimeStep(now.input(*membrane, law()), scene->dt)) return;
     checkedStep_ = -1.;
     std::ostringstream message;

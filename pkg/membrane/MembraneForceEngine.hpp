@@ -129,6 +129,8 @@ protected:
     virtual void fetch() {}
     /// Whether sides are interactions.
     virtual bool takesInteractions() const { return true; }
+    /// Refuses other engines that cannot stand beside this one.
+    void checkSurroundings();
     shared_ptr<Scene> sceneAtRest() const;
     virtual void forget();
     /// Builds the tables of the forces for nodes of which `owned` are moved by the sweep.
@@ -146,7 +148,8 @@ protected:
     [[noreturn]] void stopDiverged() const;
 
 private:
-    SceneMark preparedFor_;
+    SceneMark preparedFor_; ///< with the present parameters
+    SceneMark begunIn_;     ///< with others, it may be
     shared_ptr<Membrane> preparedMembrane_;
     long preparedVersion_ = -1; ///< of that membrane
     vector<Real> masses_;       ///< of the nodes [kg], for which it is prepared
@@ -160,6 +163,7 @@ private:
     vector<shared_ptr<MembranePhys>> interacting_; ///< what computes the sides
 
     void step();
+    void checkKnown() const;
     TimeStepState timeStepState(const Scene& in, const vector<shared_ptr<Body>>& bodies,
                                 const vector<NodeContact>& contacts) const;
     void checkTimeStep();

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneIntegrator.hpp"
 #include "CentrifugalField.hpp"
+#include "Exactly.hpp"
 #include "MembraneLedger.hpp"
+#include "MembraneNode.hpp"
 #include "RunEnd.hpp"
 #include "mechanics/LocalDamping.hpp"
 #include <algorithm>
@@ -137,6 +139,17 @@ void MembraneIntegrator::chooseEngines() {
                                  std::to_string(nodeMask - 1));
 }
 
+/// A NewtonIntegrator that is dead, for only nodes moved, must live when a body comes that is free to move.
+void MembraneIntegrator::checkOthers() {
+    const std::size_t count = scene->bodies->size();
+    if (count == othersAmong_ || !moveNodes || !newton_ || !newton_->dead) return;
+    for (const auto& body : *scene->bodies)
+        if (body && body->state && movesFreely(*body) && !exactly<MembraneNode>(body->shape))
+            throw std::runtime_error("MembraneIntegrator: body #" + std::to_string(body->id) +
+                                     " is free to move, but NewtonIntegrator is dead; set its `dead` to False");
+    othersAmong_ = count;
+}
+
 void MembraneIntegrator::gather() {
     chooseEngines();
     const bool otherStep = movedStep > 0. && scene->dt != movedStep;
@@ -151,13 +164,17 @@ void MembraneIntegrator::gather() {
 /// Takes over what was changed by hand since the bodies were last brought up to date.
 void MembraneIntegrator::readBodies() {
     checkClumps();
+    checkOthers();
     bool same = sweep_.parts() == wantedParts();
     for (const int i : owned_) {
         checkNode(i);
         same = same && belongsHere(i);
     }
     for (const int i : shared_) same = same && !belongsHere(i);
-    if (!same) arrange();
+    if (!same) {
+        arrange();
+        checkSurroundings();
+    }
     Real probe = 0.;
     for (const int i : owned_) {
         const State& state = *states_[i];

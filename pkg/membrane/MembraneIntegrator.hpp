@@ -70,12 +70,14 @@ private:
     Real centrifugal_ = 0.;              ///< omega² [1/s²] of the scene's CentrifugalField, in this step
     vector<Vector3r> outsideShared_;     ///< forces [N] from outside on the shared nodes, if they move here
     int sinceExchange_ = 0;
+    std::size_t othersAmong_ = 0; ///< so many bodies, when those that a dead NewtonIntegrator leaves were looked for
     unsigned long syncs_ = 0; ///< how often the scene's forces had been summed, or will have been, since the last step
 
     bool belongsHere(int node) const;
     bool holds(const Scene& in) const;
     int wantedParts() const;
     void chooseEngines();
+    void checkOthers();
     bool movesShared() const { return sharedMoveHere_; }
     void moveShared();
     Vector3r fieldForce(int node) const;

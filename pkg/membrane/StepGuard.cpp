@@ -17,10 +17,12 @@ std::condition_variable changed;
 std::thread::id computing;      ///< the thread in whose engine a step is, if any
 Clock::time_point lastArrival;  ///< when a step last arrived at an engine
 Clock::duration betweenSteps{}; ///< time between the last two arrivals
-int lookers = 0;                ///< who look or wait to
 bool looking = false;
-bool parked = false; ///< a step waits for the lookers
 bool saving = false; ///< the next step to arrive waits for Python's lock
+// Who wants to look has a number. A step that arrives admits all that have come by then, and no more: else many of
+// them would never let it go on.
+unsigned long given = 0, admitted = 0; ///< numbers below these
+int waiting = 0, pending = 0;          ///< who wait or look; those of them that are admitted
 
 thread_local bool runsScene = false; ///< this thread was made by YADE to run a scene
 
@@ -44,24 +46,28 @@ StepGuard::Step::Step() {
     const auto now = Clock::now();
     betweenSteps = now - lastArrival;
     lastArrival = now;
-    while (lookers > 0 || (saving && !PyGILState_Check())) {
-        parked = true;
-        changed.notify_all();
-        lock.unlock();
-        {
-            const WithoutPython without;
-            lock.lock();
-            changed.wait(lock, [] { return lookers == 0; });
+    for (bool letIn = true; letIn;) {
+        admitted = given;
+        pending = waiting;
+        if (pending > 0) {
+            changed.notify_all();
             lock.unlock();
+            {
+                const WithoutPython without;
+                lock.lock();
+                changed.wait(lock, [] { return pending == 0; });
+                lock.unlock();
+            }
+            lock.lock();
         }
-        if (saving && !PyGILState_Check()) {
-            const auto state = PyGILState_Ensure(); // which the thread that saves has until it is done
-            saving = false;
-            PyGILState_Release(state);
-        }
+        letIn = saving && !PyGILState_Check();
+        if (!letIn) break;
+        lock.unlock();
+        const auto state = PyGILState_Ensure(); // which the thread that saves has until it is done
+        saving = false;
+        PyGILState_Release(state);
         lock.lock();
     }
-    parked = false;
     computing = std::this_thread::get_id();
 }
 
@@ -78,15 +84,17 @@ StepGuard::Look::Look(bool between) : holds_(false) {
     {
         const std::lock_guard<std::mutex> lock(guard);
         if (computing == std::this_thread::get_id()) return;
-        ++lookers; // before Python's lock is given up, which a step may wait for
+        number_ = given++; // before Python's lock is given up, which a step may wait for
+        ++waiting;
     }
     const WithoutPython without;
     std::unique_lock<std::mutex> lock(guard);
     // A step that never arrives, for another engine keeps it or none of ours is there, must not be waited for.
     const auto patience = Clock::now() + std::max<Clock::duration>(std::chrono::seconds(1), 3 * betweenSteps);
     const auto comesIn = [&] {
-        const bool inPlace = !between || parked || !Omega::instance().isRunning() || Clock::now() > patience;
-        return !looking && computing == std::thread::id() && inPlace;
+        const bool mayEnter =
+            number_ < admitted || !between || !Omega::instance().isRunning() || Clock::now() > patience;
+        return mayEnter && !looking && computing == std::thread::id();
     };
     while (!comesIn()) changed.wait_for(lock, std::chrono::milliseconds(5)); // the end of a run tells nobody
     looking = holds_ = true;
@@ -97,7 +105,8 @@ StepGuard::Look::~Look() {
     {
         const std::lock_guard<std::mutex> lock(guard);
         looking = false;
-        --lookers;
+        --waiting;
+        if (number_ < admitted) --pending;
     }
     changed.notify_all();
 }

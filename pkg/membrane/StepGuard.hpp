@@ -28,6 +28,7 @@ public:
 
     private:
         bool holds_;
+        unsigned long number_ = 0;
     };
 
     /// Keeps the running step where it is until this thread gives up Python's lock: while a scene is being saved.
