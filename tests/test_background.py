@@ -4,7 +4,6 @@
 import threading
 import unittest
 
-import membrane
 import numpy as np
 from membrane import scene
 from support import O, SceneTest, force_engine, grid, node_states, scratch

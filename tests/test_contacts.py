@@ -60,7 +60,7 @@ def contacts():
 
 class TestGrains(SceneTest):
     def strike(self, path, **options):
-        """A ball strikes a free sheet at rest and bounces off; gives what is kept, before and after.
+        """A ball strikes a free sheet and bounces off; gives what is kept, before and after.
 
         Momentum, angular momentum about the origin, energy; and how often they touched.
         """
