@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What is changed behind an engine's back is refused at its next look, in a sentence that names it."""
+"""What is changed behind an engine's back is refused at its next look, by a sentence."""
 
 import unittest
 
