@@ -274,7 +274,9 @@ def set_engines(
         **own,
     )
     geometry, physics, laws, collider = [], [], [], []
-    others = sorted({body.id for body in scene.bodies}.difference(membrane.bodyIds))
+    others = []
+    if len(scene.bodies) > len(membrane.bodyIds):
+        others = sorted({body.id for body in scene.bodies}.difference(membrane.bodyIds))
     if fused:
         membrane.removeInteractions()
     else:
@@ -390,13 +392,15 @@ def loaded():
 
 
 def sort_interactions():
-    """Let YADE's loop go through interactions in the order of their ids, at some cost in time.
+    """Let YADE's loop go through interactions one by one in the order of their ids, which takes time.
 
-    Then a saved scene goes on bit for bit also while tethers touch the spool.
+    Then a saved scene goes on bit for bit also while tethers touch the spool, and sides that are
+    interactions add up alike in every run: several threads would share them out by chance.
     """
     for engine in yade.Omega().engines:
         if isinstance(engine, yade.InteractionLoop):
             engine.loopOnSortedInteractions = True
+            engine.ompThreads = 1
 
 
 def advance(steps, resumed=None):
