@@ -392,7 +392,7 @@ def loaded():
 
 
 def sort_interactions():
-    """Let YADE's loop go through interactions one by one in the order of their ids, which takes time.
+    """Let YADE take interactions one by one in the order of their ids, which costs time.
 
     Then a saved scene goes on bit for bit also while tethers touch the spool, and sides that are
     interactions add up alike in every run: several threads would share them out by chance.
