@@ -179,8 +179,7 @@ void MembraneForceEngine::checkNode(int node) const {
     std::ostringstream message;
     message << which << ": its mass was changed from " << masses_[node] << " to " << states_[node]->mass
             << " kg since its forces are computed; give pointMasses to a new membrane, or set the engine's membrane to "
-               "None "
-               "and back to go on with that mass";
+            << "None and back to go on with that mass";
     throw std::runtime_error(message.str());
 }
 
