@@ -9,6 +9,8 @@ import numpy as np
 
 MOUNTAIN = 1
 VALLEY = -1
+MOST_CELLS = 100  # along each axis of the grid in which near pairs are sought
+MOST_PAIRS = 500_000  # that are looked at together, for the sake of memory
 
 
 def unique_sides(triangles):
@@ -189,16 +191,73 @@ def crossings(nodes, sides, triangles):
     (P, 2) int
         Rows of `sides` and of `triangles`.
     """
-    corners = nodes[triangles]
-    low, high = corners.min(axis=1), corners.max(axis=1)
-    found = []
-    for i, (start, end) in enumerate(nodes[sides]):
-        near = np.all((low <= np.maximum(start, end)) & (high >= np.minimum(start, end)), axis=1)
-        near &= ~np.isin(triangles, sides[i]).any(axis=1)
-        rows = np.flatnonzero(near)
-        hit = rows[_pierces(start, end, corners[rows])]
-        found.append(np.column_stack([np.full(len(hit), i), hit]))
-    return np.concatenate(found) if found else np.empty((0, 2), dtype=int)
+    found = [np.empty((0, 2), dtype=int)]
+    if not (len(sides) and len(triangles)):
+        return found[0]
+    ends, corners = nodes[sides], nodes[triangles]
+    for side, triangle in _near_pairs(ends, corners):
+        apart = np.all(sides[side][:, :, None] != triangles[triangle][:, None], axis=(1, 2))
+        side, triangle = side[apart], triangle[apart]
+        hit = _pierces(ends[side, 0], ends[side, 1], corners[triangle])
+        found.append(np.column_stack([side, triangle])[hit])
+    pairs = np.concatenate(found)
+    return pairs[np.lexsort(pairs.T[::-1])]
+
+
+def _near_pairs(ones, others):
+    """Yield, piece by piece, the pairs of point sets whose boxes touch, each pair once.
+
+    Parameters
+    ----------
+    ones, others : (m, p, 3) and (n, q, 3) float
+        Sets of points [m].
+
+    Yields
+    ------
+    rows, rows : (k,) int
+        Of `ones` and of `others`.
+    """
+    low, high = others.min(axis=1), others.max(axis=1)
+    least, most = ones.min(axis=1), ones.max(axis=1)
+    # Cells like the boxes: in a stack of thin layers they are flat, too.
+    cell = np.maximum(2 * np.mean(high - low, axis=0), np.ptp(low, axis=0) / MOST_CELLS)
+    corner, cell = low.min(axis=0), np.where(cell > 0, cell, 1.0)
+
+    def cells(points):
+        return np.clip((points - corner) // cell, -1, MOST_CELLS + 1).astype(int)
+
+    def key(place):
+        return np.ravel_multi_index(tuple(place.T + 1), (MOST_CELLS + 3,) * 3)
+
+    def all_cells(first, last):
+        """Rows and keys of all cells from `first` to `last` (n, 3)."""
+        size = last - first + 1
+        row, step = _counted(np.prod(size, axis=1))
+        step, z = np.divmod(step, size[row, 2])
+        x, y = np.divmod(step, size[row, 1])
+        return row, key(first[row] + np.column_stack([x, y, z]))
+
+    first, begin = cells(low), cells(least)
+    other, at = all_cells(first, cells(high))
+    order = np.argsort(at, kind="stable")
+    other, at = other[order], at[order]
+    one, wanted = all_cells(begin, cells(most))
+    start, stop = (np.searchsorted(at, wanted, side=side) for side in ("left", "right"))
+    shares = np.cumsum(stop - start) // MOST_PAIRS
+    for piece in np.split(np.arange(len(one)), np.flatnonzero(np.diff(shares)) + 1):
+        row, step = _counted(stop[piece] - start[piece])
+        row = piece[row]
+        a, b = one[row], other[start[row] + step]
+        touch = np.all((least[a] <= high[b]) & (most[a] >= low[b]), axis=1)
+        # Boxes that have several cells in common count in the first of them.
+        touch &= key(np.maximum(begin[a], first[b])) == wanted[row]
+        yield a[touch], b[touch]
+
+
+def _counted(counts):
+    """For each i, `counts[i]` times i, and beside it 0, 1, … up to `counts[i]` - 1."""
+    row = np.repeat(np.arange(len(counts)), counts)
+    return row, np.arange(len(row)) - (np.cumsum(counts) - counts)[row]
 
 
 def _pierces(start, end, corners):
@@ -208,7 +267,8 @@ def _pierces(start, end, corners):
         return np.sum(np.cross(q - p, r - p) * (s - p), axis=-1)
 
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    tiny = 1e-9 * np.max(np.ptp(corners, axis=1), axis=1, initial=0) ** 3
+    tiny = 1e-9 * np.max(np.ptp(corners, axis=1), axis=1, initial=0)
+    tiny *= np.linalg.norm(np.cross(b - a, c - a), axis=1)
     below, above = volume(a, b, c, start), volume(a, b, c, end)
     split = (below * above < 0) & (np.minimum(abs(below), abs(above)) > tiny)
     turns = [volume(start, end, *pair) for pair in ((a, b), (b, c), (c, a))]

@@ -63,6 +63,7 @@ def read_msh(path, unit=1.0):
         raise BadFile(path, "$Nodes", f"node {node} lies at {points[node].tolist()}")
     triangles, creases, signs, groups = _sorted_out(path, points, blocks, names)
     triangles = _one_side_up(path, points, triangles)
+    creasing = {(name.lower(), dim) for name, dim, _ in names if name.lower() in CREASES}
     used = np.unique(triangles)
     row = np.full(len(points), -1)
     row[used] = np.arange(len(used))
@@ -76,6 +77,7 @@ def read_msh(path, unit=1.0):
         creases=row[creases],
         crease_signs=signs,
         groups={name: row[ids][row[ids] >= 0] for name, ids in groups.items()},
+        others=tuple(name for name in groups if (name.lower(), 1) not in creasing),
     )
 
 

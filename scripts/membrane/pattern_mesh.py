@@ -5,7 +5,7 @@ import os
 from collections import defaultdict
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from multiprocessing import get_context
 
 import numpy as np
@@ -42,6 +42,10 @@ class SheetMesh:
         Folded positions to start from [m]; None: flat.
     groups : dict of (n,) int, node
         Nodes by name, as a file names them.
+    others : tuple of str
+        Names of those groups that make no creases.
+    notes : tuple of str
+        Sentences about what was changed or is doubtful.
     """
 
     nodes: np.ndarray
@@ -49,7 +53,9 @@ class SheetMesh:
     creases: np.ndarray
     crease_signs: np.ndarray
     start: np.ndarray = None
-    groups: dict = None
+    groups: dict = field(default_factory=dict)
+    others: tuple = ()
+    notes: tuple = ()
 
     @property
     def area(self):
@@ -116,7 +122,6 @@ def mesh_pattern(pattern, size=None):
         creases=creases,
         crease_signs=signs,
         start=None if start is None else start[origin],
-        groups={},
     )
 
 
