@@ -122,6 +122,7 @@ def mesh_pattern(pattern, size=None):
         creases=creases,
         crease_signs=signs,
         start=None if start is None else start[origin],
+        notes=pattern.notes,
     )
 
 
