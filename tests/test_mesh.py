@@ -368,6 +368,32 @@ def _all_crossings(nodes, sides, triangles):
         found += [(i, k) for k in others[within]]
     return found
 
+    def test_quadrangles_are_cut_along_the_better_diagonal(self):
+        nodes = np.array(
+            [(0, 0, 0), (3, 0, 0), (3, 1, 0), (0, 1, 0)]  # either way the same
+            + [(0, 0, 0), (1, 0, 0), (1.5, 0.8, 0), (0.5, 0.8, 0)]  # a rhomb, nearly
+            + [(0, 0, 0), (2, -1, 0), (0.5, 0, 0), (2, 1, 0)]  # with a corner that points inwards
+            + [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)]  # no quadrangle: its sides cross
+        )
+        quads = np.arange(16).reshape(4, 4)
+        for scale in (1e-6, 1e6):
+            for first in range(4):
+                for quad, cut in (
+                    (quads[1], {frozenset((5, 6, 7)), frozenset((4, 5, 7))}),
+                    (quads[2], {frozenset((8, 9, 10)), frozenset((8, 10, 11))}),
+                ):
+                    turned = np.roll(quad, first)[None]
+                    found = geometry.cut_quadrangles(scale * nodes, turned)
+                    self.assertEqual(set(map(frozenset, found.tolist())), cut)
+                    self.assertGreater(geometry.area_vectors(nodes, found)[:, 2].min(), 0)
+                    below = geometry.cut_quadrangles(scale * nodes, turned[:, ::-1])
+                    self.assertEqual(set(map(frozenset, below.tolist())), cut)
+                    self.assertLess(geometry.area_vectors(nodes, below)[:, 2].max(), 0)
+        found = geometry.cut_quadrangles(nodes + 1e-9 * np.sin(7 * nodes), quads[:1])
+        np.testing.assert_array_equal(found, [[0, 1, 2], [0, 2, 3]])
+        with self.assertRaisesRegex(ValueError, r"nodes \[12, 13, 14, 15\] cross"):
+            geometry.cut_quadrangles(nodes, quads)
+
 
 class TestMeasures(unittest.TestCase):
     def test_flat_sail_is_fully_deployed(self):

@@ -9,6 +9,7 @@ import numpy as np
 
 MOUNTAIN = 1
 VALLEY = -1
+EVEN = 1e-6  # rad: angles nearer to each other count as equal
 MOST_CELLS = 100  # along each axis of the grid in which near pairs are sought
 MOST_PAIRS = 500_000  # that are looked at together, for the sake of memory
 
@@ -86,6 +87,43 @@ def triangle_angles(nodes, triangles):
     behind = np.roll(corners, 1, axis=1) - corners
     sine = np.linalg.norm(np.cross(ahead, behind), axis=2)
     return np.arctan2(sine, np.einsum("tij,tij->ti", ahead, behind))
+
+
+def cut_quadrangles(nodes, quadrangles):
+    """Each quadrangle cut in two along the diagonal that leaves the smaller largest angle.
+
+    Flat triangles would get a negative stiffness. Where both are as good, from the first corner.
+
+    Parameters
+    ----------
+    nodes : (N, 3) float
+        Positions [m].
+    quadrangles : (n, 4) int
+        Corners, all round.
+
+    Returns
+    -------
+    (2 n, 3) int
+        Corners of triangles, run the same way round.
+
+    Raises
+    ------
+    ValueError
+        If sides of a quadrangle cross.
+    """
+    ways = np.stack(
+        [quadrangles[:, [[0, 1, 2], [0, 2, 3]]], quadrangles[:, [[1, 2, 3], [1, 3, 0]]]]
+    )
+    upward = area_vectors(nodes, ways.reshape(-1, 3)).reshape(*ways.shape)
+    whole = upward[0].sum(axis=1)
+    outside = np.any(np.einsum("wqti,qi->wqt", upward, whole) <= 0, axis=2)
+    worst = triangle_angles(nodes, ways.reshape(-1, 3)).reshape(2, -1, 6).max(axis=2)
+    worst[outside] = np.inf
+    if np.any(np.all(outside, axis=0)):
+        q = int(np.argmax(np.all(outside, axis=0)))
+        raise ValueError(f"the sides of the quadrangle of nodes {quadrangles[q].tolist()} cross")
+    best = np.where(worst[1] < worst[0] - EVEN, 1, 0)
+    return ways[best, np.arange(len(best))].reshape(-1, 3)
 
 
 def crease_corners(triangles, creases):

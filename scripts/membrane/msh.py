@@ -18,7 +18,8 @@ import tempfile
 import numpy as np
 
 from .files import BadFile, read_bytes, shown
-from .geometry import MOUNTAIN, VALLEY, area_vectors, crease_corners, unique_sides
+from .geometry import MOUNTAIN, VALLEY, area_vectors, crease_corners, cut_quadrangles
+from .geometry import unique_sides
 from .pattern_mesh import SheetMesh
 
 VERSIONS = ("2.2", "4.1")
@@ -88,9 +89,10 @@ def _sorted_out(path, points, blocks, names):
         if cells.size and not (0 <= cells.min() and cells.max() < len(points)):
             raise BadFile(path, "$Elements", f"a {kind} names a node that is not in $Nodes")
         if kind in SURFACES:
-            triangles.append(cells[:, :3])
-            if SURFACES[kind] == 4:
-                triangles.append(cells[:, [0, 2, 3]])
+            try:
+                triangles.append(cells if kind == "triangle" else cut_quadrangles(points, cells))
+            except ValueError as error:
+                raise BadFile(path, "$Elements", str(error)) from None
         for name, dimension, group in names:
             if group == tag and dimension == {"vertex": 0, "line": 1}.get(kind, 2):
                 groups.setdefault(name, []).append(cells.ravel())

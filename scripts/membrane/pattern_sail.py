@@ -5,21 +5,21 @@ The sail starts flat, or in the pattern's folded form, turning as a whole; it fl
 hub is driven. Its centre of mass lies on the spin axis.
 """
 
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields, replace
 from math import ceil, pi
 from pathlib import Path
 
 import numpy as np
 from yade import wrapper as yade_classes
 
-from . import measures, plots, scene
+from . import Membrane, measures, plots, scene
 from .files import write_json
 from .fold_format import FoldFile, FoldFrame, fold_angles, read_fold, write_fold
 from .geometry import area_vectors, crease_angles, crossings, side_rows, triangle_areas
 from .mesh import tip_masses
 from .msh import read_msh
 from .parameters import RUN, SailParameters, check, parameter
-from .pattern_mesh import mesh_pattern
+from .pattern_mesh import default_size, mesh_pattern
 from .patterns import crease_pattern, nearest_pose
 from .progress import warn
 from .record import LEDGER_UNITS, Recorder
@@ -28,6 +28,8 @@ from .sail import save_last_good, set_engines, versions, write_page
 from .sheet_words import about_slow_sides, doubts
 
 SHEET, SPIN = "sheet", "spin"
+MOST_FINER = 100_000  # triangles of a mesh that is made finer than asked for, about
+REMESH = ": remesh, or set allowNegativeStiffness"  # what Membrane says of too flat a triangle
 STEP = 0.5  # of the critical one, by default
 TURN_STEP = 0.05  # rad: what the sail turns in a step, at most, by default
 MOST_STEPS = 1e12  # which would take years
@@ -165,9 +167,38 @@ def read_sheet(path, p):
         pattern = crease_pattern(
             content, p.unit or None, None if p.start_frame < 0 else p.start_frame, p.flat
         )
-        return mesh_pattern(pattern, p.size or None)
+        return _meshed(pattern, p)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
+
+
+def _meshed(pattern, p):
+    """The SheetMesh of a pattern, finer than asked for if only that makes no triangle too flat."""
+    size = p.size or default_size(pattern.area)
+    asked = mesh_pattern(pattern, size)
+    if not _is_too_flat(asked, p):
+        return asked
+    for finer in (size / 2, size / 4):
+        if pattern.area / finer**2 > MOST_FINER / 2.3:
+            break
+        sheet = mesh_pattern(pattern, finer)
+        if not _is_too_flat(sheet, p):
+            note = (
+                f"with sides of {size:.3g} m a triangle would be too flat: they are made "
+                f"{finer:.3g} m long, which gives {len(sheet.triangles)} triangles"
+            )
+            return replace(sheet, notes=(*sheet.notes, note))
+    return asked  # which `build` refuses
+
+
+def _is_too_flat(sheet, p):
+    """Whether equation (5) gives a side of a SheetMesh a negative stiffness."""
+    film = scene.film(p.young, p.poisson, p.density, p.thickness)
+    try:
+        Membrane(material=film, nodes=sheet.nodes, triangles=sheet.triangles)
+    except ValueError as error:
+        return REMESH in str(error)
+    return False
 
 
 def place(sheet, p):
@@ -267,7 +298,7 @@ def build(sail, p):
     try:
         membrane = add_membrane(sail, sail.start, p)
     except ValueError as error:
-        refused, remesh, _ = str(error).partition(": remesh, or set allowNegativeStiffness")
+        refused, remesh, _ = str(error).partition(REMESH)
         advice = "; mesh it otherwise, a crease pattern by another --size" if remesh else ""
         raise ValueError(refused + advice) from None
     made = set_engines(membrane, p, driven=[membrane.bodyIds[i] for i in sail.hub])
