@@ -198,8 +198,9 @@ def fold_seeds():
 
 @lru_cache(maxsize=None)
 def msh_seeds():
-    """Meshes of gmsh in both versions, text and binary."""
-    return [gmsh_sheet(version, binary).read_bytes() for version in (2.2, 4.1) for binary in (0, 1)]
+    """Meshes of gmsh in all versions, text and binary."""
+    files = (2.2, 0), (2.2, 1), (4.0, 0), (4.1, 0), (4.1, 1)
+    return [gmsh_sheet(*file).read_bytes() for file in files]
 
 
 @lru_cache(maxsize=None)

@@ -9,6 +9,7 @@ import numpy as np
 
 MOUNTAIN = 1
 VALLEY = -1
+NEAR = 1e-6  # of a sheet's width: nodes that are nearer make the time step hopelessly short
 EVEN = 1e-6  # rad: angles nearer to each other count as equal
 MOST_CELLS = 100  # along each axis of the grid in which near pairs are sought
 MOST_PAIRS = 500_000  # that are looked at together, for the sake of memory
@@ -121,7 +122,8 @@ def cut_quadrangles(nodes, quadrangles):
     worst[outside] = np.inf
     if np.any(np.all(outside, axis=0)):
         q = int(np.argmax(np.all(outside, axis=0)))
-        raise ValueError(f"the sides of the quadrangle of nodes {quadrangles[q].tolist()} cross")
+        middle = nodes[quadrangles[q]].mean(axis=0).tolist()
+        raise ValueError(f"the sides of the quadrangle round {middle} m cross")
     best = np.where(worst[1] < worst[0] - EVEN, 1, 0)
     return ways[best, np.arange(len(best))].reshape(-1, 3)
 
@@ -208,6 +210,40 @@ def crease_angles(nodes, triangles, creases, signs):
     sine = -signs * np.sum(along * np.cross(left, right), axis=1)
     angles = np.arctan2(sine, np.sum(left * right, axis=1))
     return np.where(angles <= -np.pi / 2, angles + 2 * np.pi, angles)
+
+
+def nearness(points):
+    """Below which distance [m] `points` (N, 3) of a sheet count as one: NEAR of its width."""
+    return NEAR * np.sort(np.ptp(points, axis=0))[1]
+
+
+def twins(points, near):
+    """Pairs (n, 2) of rows of `points` (N, 3) no farther than `near` apart [m], in order."""
+    # Sorted along a direction in which few points of a grid lie side by side.
+    order = np.argsort(points @ (0.534, 0.633, 0.561))
+    places, found = points[order], [np.empty((0, 2), dtype=int)]
+    along = places @ (0.534, 0.633, 0.561)
+    for ahead in range(1, len(order)):
+        close = np.flatnonzero(along[ahead:] - along[:-ahead] <= near)
+        if not len(close):
+            break
+        apart = np.linalg.norm(places[close + ahead] - places[close], axis=1)
+        close = close[apart <= near]
+        found.append(np.column_stack([order[close], order[close + ahead]]))
+    pairs = np.sort(np.concatenate(found), axis=1)
+    return pairs[np.lexsort(pairs.T[::-1])]
+
+
+def pieces(count, sides):
+    """Number (N,) of the piece that each of `count` nodes belongs to, joined by `sides` (E, 2)."""
+    root = np.arange(count)
+    while len(sides):
+        low, high = np.sort(root[sides], axis=1).T
+        sides, low, high = (a[low != high] for a in (sides, low, high))
+        np.minimum.at(root, high, low)
+        while not np.array_equal(root, root[root]):
+            root = root[root]
+    return np.unique(root, return_inverse=True)[1]
 
 
 def crossings(nodes, sides, triangles):

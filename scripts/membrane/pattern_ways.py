@@ -9,32 +9,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from .geometry import nearness, twins
 from .orientation import faces_to_turn, laid_down, plane_normal
-
-NEAR = 1e-6  # of the pattern's width: what is nearer would make the time step hopelessly short
-OBLIQUE = np.array([0.534, 0.633, 0.561])  # a direction in which few vertices lie side by side
-
-
-def nearness(vertices):
-    """Below which distance [m] vertices (V, 3) of a flat sheet count as one."""
-    return NEAR * np.sort(np.ptp(vertices, axis=0))[1]
-
-
-def _twins(pattern):
-    """Pairs (n, 2) of vertices that lie on one another, the smaller number first, in order."""
-    used, near = np.unique(pattern.edges), nearness(pattern.vertices)
-    places = pattern.vertices[used] @ OBLIQUE
-    order = np.argsort(places)
-    used, places, found = used[order], places[order], [np.empty((0, 2), dtype=int)]
-    for ahead in range(1, len(used)):
-        close = np.flatnonzero(places[ahead:] - places[:-ahead] <= near)
-        if not len(close):
-            break
-        pairs = np.sort(np.column_stack([used[close], used[close + ahead]]), axis=1)
-        apart = np.linalg.norm(np.diff(pattern.vertices[pairs], axis=1)[:, 0], axis=1)
-        found.append(pairs[apart <= near])
-    pairs = np.concatenate(found)
-    return pairs[np.lexsort(pairs.T[::-1])]
 
 
 def without_twins(pattern):
@@ -42,17 +18,18 @@ def without_twins(pattern):
 
     Where the file gives faces they say what hangs together: twins stay two, as beside a slit.
     """
-    twins = _twins(pattern)
-    if not len(twins):
+    used = np.unique(pattern.edges)
+    pairs = used[twins(pattern.vertices[used], nearness(pattern.vertices))]
+    if not len(pairs):
         return pattern
-    a, b = twins[0]
+    a, b = pairs[0]
     apart = np.linalg.norm(pattern.vertices[b] - pattern.vertices[a])
-    more = f", and so {len(twins) - 1} more pairs" if len(twins) > 1 else ""
+    more = f", and so {len(pairs) - 1} more pairs" if len(pairs) > 1 else ""
     note = f"vertices {a} and {b} lie {apart:.2g} m apart{more}: "
     if pattern.faces:
         return replace(pattern, notes=(*pattern.notes, note + "they stay two, as the faces say"))
     same = np.arange(len(pattern.vertices))
-    for a, b in twins:
+    for a, b in pairs:
         same[b] = same[a]
     edges = same[pattern.edges]
     kept = edges[:, 0] != edges[:, 1]

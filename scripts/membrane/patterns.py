@@ -12,9 +12,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .geometry import nearness
 from .orientation import plane_normal
-from .pattern_ways import area_vector, nearness, one_way_round, plain, seen_from_above
-from .pattern_ways import without_repeats, without_twins
+from .pattern_ways import area_vector, one_way_round, plain, seen_from_above, without_repeats
+from .pattern_ways import without_twins
 
 STRETCH = 0.01  # by which edges of a folded form may be longer than the pattern's
 SHORTENED = 0.5  # and shorter: film between the ends may have buckled
