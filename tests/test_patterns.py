@@ -495,6 +495,19 @@ class TestFoldedStart(unittest.TestCase):
         moved = replace(flat, coords=flat.coords[:, [1, 2, 0]])  # not folded at all
         self.assertIsNotNone(pattern_of(flat, moved, start=1).folded)
 
+    def test_angles_in_radians_are_doubted(self):
+        (said,) = pattern_of(self.strip(1.5, -np.pi)).notes
+        self.assertIn("are they in radians? FOLD has degrees", said)
+        for few in ((3.2, -1), (0, 0)):
+            self.assertEqual(pattern_of(self.strip(*few)).notes, ())
+        points, edges = [*SQUARE, (1.5, 1.5)], [*ring(0, 4), *((4, i) for i in range(4))]
+        angles = np.array([0.0, 0, 0, 0, 1, 1.5, 1, 1.5])
+        with self.assertRaisesRegex(ValueError, "do not go together: .*; .* in radians"):
+            pattern_of(frame(points, edges, "BBBBVVVV", angles=angles))
+        form = replace(self.strip(1.5, -1), coords=pattern_of(self.strip(1.5, -1)).folded)
+        nearly_flat = pattern_of(self.strip(1.5, -1), replace(form, classes=("foldedForm",)))
+        self.assertEqual(nearly_flat.notes, ())
+
     def test_a_folded_form_of_another_sheet_is_passed_over(self):
         flat = replace(self.strip(50, 0), angles=None)
         other = replace(flat, coords=np.vstack([flat.coords, [0, 0, 1]]), classes=("foldedForm",))

@@ -141,17 +141,20 @@ def crease_pattern(content, unit=None, start=None, unfolded=False):
     pattern = replace(pattern, vertices=flattened(pattern))
     pattern = _with_faces(pattern)
     _check(pattern)
+    doubts = ()
+    if form is None and pattern.angles is not None and 0 < np.abs(pattern.angles).max() <= np.pi:
+        doubts = ("no fold angle is larger than pi: are they in radians? FOLD has degrees",)
     try:
         folded = _folded_start(pattern, frames, form if form != flat else None, unit)
         if folded is not None and _is_folded_flat(pattern, folded):
             if start is not None:
                 raise ValueError(f"frame {start} is folded flat: it has no height to open from")
             folded = None
-    except ValueError:
+    except ValueError as error:
         if not unfolded:
-            raise
+            raise ValueError("; ".join([str(error), *doubts])) from None
         folded = None
-    return replace(pattern, folded=folded)
+    return replace(pattern, folded=folded, notes=(*pattern.notes, *doubts))
 
 
 def _folded_start(pattern, frames, form, unit):
