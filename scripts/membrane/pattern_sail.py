@@ -23,8 +23,8 @@ from .pattern_mesh import default_size, mesh_pattern
 from .patterns import crease_pattern, nearest_pose
 from .progress import warn
 from .record import LEDGER_UNITS, Recorder
-from .sail import Stopwatch, add_membrane, check_step, counts, instants, march, nearest
-from .sail import save_last_good, set_engines, versions, write_page
+from .sail import Stopwatch, add_membrane, check_step, counts, instants, last_good_saved, march
+from .sail import nearest, set_engines, versions, write_page
 from .sheet_words import about_slow_sides, doubts
 
 SHEET, SPIN = "sheet", "spin"
@@ -371,9 +371,8 @@ def fly(sheet, p, folder, pictures=True, shown=None, page=True):
     recorder = PatternRecorder(folder, sail, made)
     watch.lap("build")
     try:
-        march(steps, recorder, lambda row: f"area {row['projected_area']:.3f}")
-    except RuntimeError as error:
-        raise RuntimeError(f"{error}. {save_last_good(made, folder)}") from error
+        with last_good_saved(made, folder, yade_classes.Omega().iter):
+            march(steps, recorder, lambda row: f"area {row['projected_area']:.3f}")
     finally:
         recorder.close()
     wall = watch.lap("run")
