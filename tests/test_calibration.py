@@ -3,9 +3,11 @@
 
 import importlib
 import json
+import os
 import subprocess
 import sys
 import unittest
+import unittest.mock
 
 import numpy as np
 from membrane.files import BadFile
@@ -13,9 +15,9 @@ from processes import Halt, kill
 from support import ROOT, long, run_yade, scratch, yade_environment
 
 sys.path.append(str(ROOT / "scripts"))
-target, search, surface, kept_runs = (
+target, search, surface, kept_runs, runs = (
     importlib.import_module(f"calibration.{name}")
-    for name in ("target", "search", "surface", "kept_runs")
+    for name in ("target", "search", "surface", "kept_runs", "runs")
 )
 TIMES = np.linspace(0.0, 0.1, 101)  # [s]
 LOW, HIGH = np.log([10.0, 1.0]), np.log([1000.0, 100.0])
@@ -278,6 +280,18 @@ def noisy_run(alpha_crease, beta, seed, *scene):
     rows = np.column_stack([table["time"], *columns])
     np.savetxt(path, rows, delimiter=",", header=",".join(["time", *NOISE]), comments="")
     return path
+
+
+class TestDeployments(unittest.TestCase):
+    def test_a_run_that_diverges_has_no_curves_and_ends_nothing(self):
+        names, times = ("phase_difference",), np.linspace(0.0, 0.2, 11)
+        wanted = target.Target(times, names, np.zeros((1, 11)), np.zeros(1))
+        scene = ["--fold-lines=3", "--inner-width=0.15", "--spin-up-tolerance=1e-3"]
+        simulate = runs.Deployments(["beta"], wanted, [*scene, "--dt=2.3e-5", "--force-time-step"])
+        with unittest.mock.patch.dict(os.environ, yade_environment()):
+            (curves,) = simulate([[np.log(30.0)]])
+        self.assertIsNone(curves)
+        self.assertEqual((len(simulate), len(simulate.points)), (1, 0))
 
 
 class TestKeptRuns(unittest.TestCase):
