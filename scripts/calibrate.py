@@ -3,7 +3,9 @@
 
 Run it by `scripts/run.sh calibrate TARGET [options]`; TARGET is a table with a header as
 history.csv: `time` [s] since the release, and `phase_difference` [rad] or `deployment_rate` [-] or
-both. Options that are not listed here go to scripts/deploy.py, as `--omega 20`: the scene.
+both; its columns are parted by commas, or by semicolons, tabs or blanks, and then its decimal point
+may be a comma. Options that are not listed here go to scripts/deploy.py, as `--omega 20`: the
+scene.
 
 About 40 runs of a few seconds; stopped and called again it goes on from those that it has. Writes
 calibration.json, calibration.png and runs.csv.

@@ -54,8 +54,8 @@ END
 # Not the VTK of python3-paraview, which excludes python3-vtk9: it and YADE's crash in one process.
 run_packages=(yade python3-numpy python3-matplotlib python3-vtk9
     g++ cmake make libboost-dev libeigen3-dev python3-dev libglut-dev libgtest-dev)
-sail_packages=(python3-gmsh python3-meshio)
-test_packages=(xvfb xauth) # a display for the tests of drawing
+sail_packages=(python3-gmsh)
+test_packages=(xvfb xauth python3-meshio) # a display for the tests of drawing; another reader and writer of files
 verify_packages=(calculix-ccx python3-scipy)
 bench_packages=(lammps openmpi-bin valgrind)
 animation_packages=(xvfb libgl1-mesa-dri ffmpeg)

@@ -15,6 +15,7 @@ with plain_errors("sail"):
     from membrane import pattern_sail
     from membrane.pattern_sail import PatternParameters
     from membrane.report import PAGE
+    from membrane.sheet_words import described
 
 
 def command_line():
@@ -37,6 +38,8 @@ def main():
     out, pictures = arguments.out, not arguments.no_pictures
     parameters = from_arguments(arguments, kind=PatternParameters)
     sheet = pattern_sail.read_sheet(arguments.file, parameters)
+    words = described(sheet, pattern_sail.place(sheet, parameters))
+    print(f"{arguments.file}: {words}", flush=True)
     with new_results(out) as part:
         page = not arguments.no_report
         summary = pattern_sail.fly(sheet, parameters, part, pictures, page=page)

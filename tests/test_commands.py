@@ -10,10 +10,11 @@ import unittest
 from functools import lru_cache
 from pathlib import Path
 
+from membrane import scene
 from membrane.sail import LAST_GOOD
 from membrane.unfinished import UNFINISHED
 from processes import Halt
-from support import ROOT, scratch, yade_environment
+from support import O, ROOT, scratch, yade_environment
 
 SCRIPTS = ROOT / "scripts"
 PATTERN = SCRIPTS / "patterns" / "miura.fold"
@@ -195,11 +196,12 @@ class TestEarlierResults(BadDayTest):
         self.assertFalse((self.folder / UNFINISHED).exists())
 
     def test_control_c_leaves_them_whole(self):
-        # In the spin-up, and in the run.
+        # In the spin-up, where nothing is worth keeping, and in the run.
         for script, wanted, options in (
             ("deploy.py", "spin-up", ENDLESS),
             ("deploy.py", "deploying", ENDLESS),
             ("sail.py", "deploying", [PATTERN, "--size", "0.05", "--duration", "20"]),
+            ("ikaros.py", "deploying", ["--fold-lines", "4", "--duration", "1000"]),
         ):
             process = start(script, *options, "--out", self.folder)
             said = ""
@@ -209,6 +211,20 @@ class TestEarlierResults(BadDayTest):
                 said += line
             process.send_signal(signal.SIGINT)
             self.ends(process, STOPPED, "stopped by Ctrl-C")
+            kept = self.folder / UNFINISHED / LAST_GOOD
+            self.assertEqual(kept.exists(), wanted == "deploying")
+            if kept.exists():
+                self.goes_on(kept)
+
+    def goes_on(self, kept):
+        """A saved state is that of a sail that moves, and can be run on."""
+        O.load(str(kept), quiet=True)
+        time, step = O.time, O.iter
+        self.assertGreater(step, 0)
+        scene.advance(100)
+        self.assertAlmostEqual(O.time, time + 100 * O.dt)
+        self.assertGreater(scene.loaded().ledger.kinetic, 0)
+        O.reset()
 
     def test_sigterm_and_the_end_of_the_terminal_leave_them_whole(self):
         for number in (signal.SIGTERM, signal.SIGHUP):
@@ -218,7 +234,7 @@ class TestEarlierResults(BadDayTest):
             while "deploying" not in process.stderr.readline():
                 self.assertIsNone(process.poll())
             process.send_signal(number)
-            self.ends(process, TERMINATED, "^deploy: terminated")
+            self.ends(process, TERMINATED, f"^deploy: terminated. The last good .*{LAST_GOOD}")
 
     def check_on_disk(self, size, mode, sentence):
         """How a run ends on a file system of its own, where earlier results are, too."""

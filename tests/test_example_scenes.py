@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The further scenes as a user runs them: IKAROS on its free hub, the spinning disk."""
 
+import importlib
 import json
 import re
+import sys
 import unittest
+from dataclasses import replace
 
+from membrane import sail
 from membrane.output import read_history
-from support import ROOT, CommandTest, long, run_yade, scratch
+from support import O, ROOT, CommandTest, long, quiet, run_yade, scratch
 
 
 class TestIkaros(CommandTest):
@@ -28,6 +32,23 @@ class TestIkaros(CommandTest):
         self.assertGreater(found["largest_change_of_hub_energy"], 1e-2 * energy)
         self.assertLess(found["largest_unexplained_energy"], 1e-4 * energy)
         self.assertGreater((folder / "ikaros.png").stat().st_size, 50_000)
+        self.assertEqual(found["versions"], sail.versions())
+
+    def test_a_run_that_goes_wrong_leaves_its_last_good_state(self):
+        """The watch is told to stop at what is rounding."""
+        O.reset()
+        sys.path.append(str(ROOT / "scripts"))
+        ikaros = importlib.import_module("ikaros")
+        folder = scratch() / "ikaros_wrong"
+        folder.mkdir()
+        strict = {"energy_tolerance": 1e-9, "spin_up_tolerance": 1e-2, "duration": 6.0}
+        with quiet(), self.assertRaises(sail.Diverged) as caught:
+            ikaros.deploy(replace(ikaros.IKAROS, fold_lines=4, **strict), 5.0, folder)
+        self.assertIn("from nowhere", str(caught.exception))
+        self.assertIn(str(folder / sail.LAST_GOOD), str(caught.exception))
+        O.load(str(folder / sail.LAST_GOOD), quiet=True)
+        self.assertGreater(O.iter, 0)
+        O.reset()
 
     def test_bad_values_end_with_one_sentence(self):
         for option, said in (

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from membrane._load import VERSION
 from membrane.case_folder import LAST_GOOD
+from membrane.unfinished import UNFINISHED
 from scipy.interpolate import CubicSpline
 
 from .kept_runs import KeptRuns
@@ -95,7 +96,8 @@ class Deployments:
                 capture_output=True,
                 text=True,
             )
-            diverged = (Path(folder) / LAST_GOOD).exists()
+            kept = Path(folder) / UNFINISHED / LAST_GOOD  # also by a run that was only stopped
+            diverged = done.returncode == 1 and kept.exists()
             if done.returncode and not diverged:
                 said = [line for line in done.stderr.splitlines() if line.startswith("deploy:")]
                 raise RuntimeError(said[-1] if said else f"a run ended by {done.returncode}")

@@ -50,13 +50,12 @@ def plain_errors(command, stopped="stopped by Ctrl-C"):
     try:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])  # which scripts/run.sh blocks
         yield
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, Terminated) as error:
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # the end is near, and must not be disturbed
-        print(f"\n{command}: {stopped}", file=sys.stderr)
-        sys.exit(STOPPED)
-    except Terminated:
-        print(f"\n{command}: terminated", file=sys.stderr)
-        sys.exit(TERMINATED)
+        by_hand = isinstance(error, KeyboardInterrupt)
+        sentence = stopped if by_hand else "terminated"
+        print(f"\n{command}: {'. '.join(filter(None, [sentence, str(error)]))}", file=sys.stderr)
+        sys.exit(STOPPED if by_hand else TERMINATED)
     except MemoryError as error:
         sys.exit(f"{command}: there is not enough memory" + (f": {error}" if str(error) else ""))
     except ModuleNotFoundError as error:

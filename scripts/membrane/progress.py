@@ -77,6 +77,11 @@ def stages(label, weights, silent=False, stream=None):
         progress.show(1.0, f"done in {time.monotonic() - progress.start:.1f} s")
 
 
+def warn(text):
+    """Print a sentence about something doubtful to standard error."""
+    print(f"Warning: {text}", file=sys.stderr, flush=True)
+
+
 def announcer(prefix):
     """A function that prints lines of progress to standard error, with the time since now."""
     start = time.monotonic()

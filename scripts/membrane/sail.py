@@ -5,6 +5,7 @@ import os
 import platform
 import sys
 import time
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from yade import wrapper as yade_classes
 
 from . import __version__, measures, plots, report, scene
 from .case_folder import LAST_GOOD
+from .commands import Terminated
 from .files import write_json
 from .fold import fold, fold_report
 from .mesh import mesh_of, tip_masses
@@ -298,20 +300,19 @@ def deploy(p, folder, pictures=True, checkpoints=None, page=True, look=look_away
         facts["release_step"] = yade_classes.Omega().iter
     recorder = Recorder(folder, mesh, sail, p.omega, begun and begun["recorder"])
     try:
-        march(
-            p,
-            recorder,
-            lambda row: f"rate {row['deployment_rate']:.3f}",
-            look,
-            begun and begun["row"],
-            lambda row: keep(RUN, {"row": row, "recorder": recorder.state()}),
-        )
-    except (RuntimeError, NotFinite) as error:
-        time_reached = (yade_classes.Omega().iter - facts["release_step"]) * p.dt
-        saying = save_last_good(sail, folder)
+        with last_good_saved(sail, folder, facts["release_step"], stopped=not checkpoints):
+            march(
+                p,
+                recorder,
+                lambda row: f"rate {row['deployment_rate']:.3f}",
+                look,
+                begun and begun["row"],
+                lambda row: keep(RUN, {"row": row, "recorder": recorder.state()}),
+            )
+    except Diverged:
         if pictures and recorder.rows:
             draw(mesh, recorder, recorder.columns(), folder)
-        raise Diverged(RUN, time_reached, str(error), saying) from error
+        raise
     finally:
         recorder.close()
         watch.lap(RUN)
@@ -384,6 +385,36 @@ def write_page(folder):
         report.write_report(folder)
     except report.NoViewer as error:
         print(f"no {report.PAGE}: {error}", file=sys.stderr)
+
+
+@contextmanager
+def last_good_saved(sail, folder, release_step, stopped=True):
+    """Where the run in the block goes wrong or is stopped, save its last good state and say so.
+
+    Parameters
+    ----------
+    sail : MembraneScene
+    folder : path
+    release_step : int
+        Of YADE, at which time after the release is 0.
+    stopped : bool
+        Also after Ctrl-C and other signals, not only where it goes wrong.
+
+    Raises
+    ------
+    Diverged
+        If it went wrong.
+    """
+    scene_now = yade_classes.Omega()
+    try:
+        yield
+    except (RuntimeError, NotFinite) as error:
+        time = (scene_now.iter - release_step) * scene_now.dt
+        raise Diverged(RUN, time, str(error), save_last_good(sail, folder)) from error
+    except (KeyboardInterrupt, Terminated) as error:
+        if not stopped:
+            raise
+        raise type(error)(save_last_good(sail, folder)) from None
 
 
 def save_last_good(sail, folder):
