@@ -17,6 +17,7 @@ from pathlib import Path
 import sweeping  # noqa: F401  (makes parts of membrane importable without YADE)
 from membrane.commands import folder, plain_errors
 from membrane.files import write_json
+from membrane.own import CALIBRATION
 from membrane.unfinished import new_results
 
 with plain_errors("calibrate"):
@@ -181,7 +182,9 @@ def main():
 
     target = read_target(arguments.target, arguments.column or (), arguments.until)
     simulate = Deployments(names, target, [*scene, *held], tell)
-    with new_results(arguments.out) as part:  # a folder that cannot be is refused before the runs
+    with new_results(
+        arguments.out, CALIBRATION
+    ) as part:  # a folder that cannot be is refused before the runs
         kept = arguments.out / KEPT
         count = simulate.keep(kept)
         if count:

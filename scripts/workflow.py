@@ -57,7 +57,7 @@ def lock(directory):
     """
     folder = directory / ".snakemake"
     folder.mkdir(parents=True, exist_ok=True)
-    handle = os.open(folder / "workflow.lock", os.O_RDWR | os.O_CREAT)
+    handle = os.open(folder / "workflow.lock", os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW)
     try:
         fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:

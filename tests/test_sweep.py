@@ -523,6 +523,12 @@ class TestReport(SweepTest):
         self.assertRegex(said, f"^sweep: {folder}/summary.json .*\n$")
         self.assertEqual(tree(folder), before)
 
+    def test_table_of_another_is_not_written_over(self):
+        folder = scratch() / "own_table"
+        shutil.copytree(two_cases() / grid.CASES, folder / "mine")
+        (folder / "cases.csv").write_text("my own\n")
+        self.refused(folder, f"{folder}/cases.csv was not made by this version")
+
     def test_full_disk_keeps_the_earlier_report(self):
         folder, _ = self.copy("full")
         self.report(folder)

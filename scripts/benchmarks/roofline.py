@@ -20,7 +20,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
-from membrane.plots import DPI
+from membrane.plots import save
 
 from . import cases, results
 from .sheet import SIDES
@@ -456,4 +456,4 @@ def plot(found, points, known, path):
     axes.set(ylabel="operations a second [Gflop/s]")
     axes.grid(alpha=0.3)
     axes.legend(frameon=False, fontsize=9, loc="lower right")
-    figure.savefig(path, dpi=DPI)
+    save(figure, path)

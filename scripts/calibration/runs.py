@@ -13,7 +13,7 @@ from membrane._load import VERSION
 from membrane.case_folder import LAST_GOOD
 from scipy.interpolate import CubicSpline
 
-from .kept_runs import KeptRuns
+from .kept_runs import KeptRuns, refuse_another
 
 DEPLOY = Path(__file__).resolve().parents[1] / "deploy.py"
 INTERVAL = 1e-3  # [s] between rows of a run's history
@@ -50,6 +50,7 @@ class Deployments:
             "columns": list(self.target.columns),
             "times": self.target.times.tolist(),
         }
+        refuse_another(path)
         self.kept = KeptRuns(path, about)
         return len(self.kept)
 

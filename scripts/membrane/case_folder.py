@@ -2,6 +2,7 @@
 """Folders of cases: names of their files, and what has become of a case. Needs no YADE."""
 
 import fcntl
+import os
 import sys
 from dataclasses import dataclass, field, fields
 from pathlib import Path
@@ -10,6 +11,7 @@ import numpy as np
 
 from .files import BadFile, read_object, shown
 from .history import read_history
+from .own import LOCK
 from .parameters import SailParameters
 
 COMPLETE, DIVERGED = "complete", "diverged"  # outcomes: the case is finished
@@ -21,7 +23,7 @@ CURVES = ("time", "deployment_rate", "phase_difference")  # columns that it must
 
 RESULT = "case.json"  # what came of the case
 FAILURE = "failure.json"  # in the folder NAME.part: why there is none
-BEGUN, LOCK, SAVED = "begun.json", "lock", "checkpoint"  # in NAME.part only
+BEGUN, SAVED = "begun.json", "checkpoint"  # in NAME.part only
 PART = ".part"
 LAST_GOOD = "last_good.yade.gz"  # scene of a run that went wrong
 
@@ -52,7 +54,7 @@ def finished(folder, wanted=None):
     ValueError
         If it holds one of other parameters.
     """
-    if not folder.exists():
+    if not os.path.lexists(folder):
         return None
     try:
         found = _result(folder)
@@ -199,7 +201,7 @@ class Status:
 def look(folder):
     """The Status of the case of a folder."""
     folder = Path(folder)
-    if folder.exists():
+    if os.path.lexists(folder):
         return _look_at_result(folder)
     part = part_of(folder)
     if not part.is_dir():

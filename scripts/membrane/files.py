@@ -8,11 +8,13 @@ a file that cannot be opened at all is an OSError.
 import json
 import math
 import os
-from contextlib import contextmanager
+import secrets
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 LARGEST = 256 * 2**20  # bytes; ten million nodes fill about as much
 SHOWN = 60  # characters of a bad value that a message repeats
+TEMPORARY = ".membrane-"  # names of files begin by it that are to take the place of others
 
 
 class BadFile(ValueError):
@@ -112,29 +114,52 @@ def read_object(path, largest=LARGEST):
 
 
 @contextmanager
+def named(path):
+    """An OSError in the block that names no file, or a temporary one, names `path`."""
+    try:
+        yield
+    except OSError as error:
+        if error.filename is not None and TEMPORARY not in str(error.filename):
+            raise
+        reason = error.strerror or str(error) or type(error).__name__
+        raise OSError(error.errno, f"could not be written: {reason}", str(path)) from error
+
+
+@contextmanager
 def replacing(path):
     """Give a path to write to, which takes the place of `path` at the end of the block.
 
-    Readers see either the old file or the new one. Where the block ends by an error the old one
-    stays, and what was written is removed; an OSError names the file.
+    Readers see either the old file or the new one, also after a power cut. Where the block ends by
+    an error the old one stays, and what was written is removed; an OSError names the file. A link
+    at `path` is replaced itself.
     """
     path = Path(path)
-    part = path.with_name(path.name + ".part")
-    try:
-        yield part
-        os.replace(part, path)
-    except BaseException as error:
-        part.unlink(missing_ok=True)
-        if isinstance(error, OSError) and error.filename is None:
-            reason = error.strerror or str(error) or type(error).__name__
-            raise OSError(error.errno, f"could not be written: {reason}", str(path)) from error
-        raise
+    with named(path):
+        part = _new_file(path)
+        try:
+            yield part
+            flush(part)
+            os.replace(part, path)
+        except BaseException:
+            part.unlink(missing_ok=True)
+            raise
+    with suppress(OSError):  # not every file system can, and no file is lost without it
+        flush(path.parent)
+
+
+def _new_file(path):
+    """Make an empty file beside `path` under a name that nothing else has; returns its Path."""
+    while True:
+        new = path.with_name(TEMPORARY + secrets.token_hex(4))
+        with suppress(FileExistsError):
+            os.close(os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o666))
+            return new
 
 
 def replace_text(path, text):
     """Write a text file so that readers see either the old one or the new one."""
     with replacing(path) as part:
-        part.write_text(text)
+        part.write_text(text, encoding="utf-8")
 
 
 def write_json(path, content):
@@ -146,8 +171,13 @@ def settle(folder):
     """Wait until all in `folder` is on the disk, so that a power cut cannot take it back."""
     folder = Path(folder)
     for path in [*folder.rglob("*"), folder]:
-        handle = os.open(path, os.O_RDONLY)
-        try:
-            os.fsync(handle)
-        finally:
-            os.close(handle)
+        flush(path)
+
+
+def flush(path):
+    """Wait until a file, or the names in a folder, are on the disk."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)

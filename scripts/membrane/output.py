@@ -4,6 +4,7 @@
 import csv
 import math
 import os
+import re
 from pathlib import Path
 from xml.etree import ElementTree
 from xml.sax.saxutils import quoteattr
@@ -55,8 +56,9 @@ class VtkSeries:
         self._cell_array = cell_array(cells)
         self.folder.mkdir(parents=True, exist_ok=True)
         kept = {file for _, file in self.frames}
-        for earlier in self.folder.glob(f"{name}_*.vtu"):
-            if earlier.name not in kept:
+        of_this_name = re.compile(re.escape(name) + r"_\d{6,}\.vtu")
+        for earlier in self.folder.iterdir():
+            if of_this_name.fullmatch(earlier.name) and earlier.name not in kept:
                 earlier.unlink()
         if kept:
             self._list_frames()

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from . import own
 from .files import BadFile, replace_text
 from .finished_run import read_run
 from .geometry import crease_angles
@@ -117,6 +118,7 @@ def write_report(folder):
     # "<" could end the page's script.
     content = json.dumps(run_data(folder), allow_nan=False).replace("<", "\\u003c")
     page = folder / PAGE
+    own.add_to_list(folder, own.RUN, [PAGE])
     replace_text(page, before + content + after)
     return page
 

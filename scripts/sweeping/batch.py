@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Runs the cases of a sweep by yade-batch, shows how far they are, and tells what stopped them."""
 
-import fcntl
 import os
 import signal
 import subprocess
@@ -9,7 +8,9 @@ import time
 from contextlib import contextmanager
 from pathlib import Path
 
+from membrane import own
 from membrane.case_folder import DAMAGED, FAILED, KILLED, MISSING, RUNNING, advice, look, part_of
+from membrane.files import replace_text
 from membrane.progress import Progress
 
 from .grid import CASES, table
@@ -22,13 +23,9 @@ LOOK = 0.5  # [s], between two looks at the cases
 
 @contextmanager
 def alone(folder):
-    """Hold the sweep's lock; RuntimeError if another process sweeps in this folder."""
-    (folder / BATCH).mkdir(parents=True, exist_ok=True)
-    with open(folder / BATCH / "lock", "w") as lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise RuntimeError(f"another sweep is running in {folder}") from None
+    """Hold the sweep's lock; ValueError if another process sweeps in this folder."""
+    busy = f"another sweep is running in {folder}"
+    with own.held(folder / BATCH, busy, links={SCRIPT.name}):
         yield
 
 
@@ -87,7 +84,7 @@ def _batch(folder, cases, left, jobs, checkpoint_every, pictures):
     script = batch / SCRIPT.name  # yade-batch allows no blanks in paths
     script.unlink(missing_ok=True)
     script.symlink_to(SCRIPT)
-    own = {
+    columns = {
         name: {
             "out": f"../{CASES}/{name}",
             "checkpoint_every": checkpoint_every,
@@ -95,7 +92,7 @@ def _batch(folder, cases, left, jobs, checkpoint_every, pictures):
         }
         for name in left
     }
-    (batch / "table.txt").write_text(table(left, own))
+    replace_text(batch / "table.txt", table(left, columns))
     command = ["yade-batch", f"--jobs={jobs}", "--job-threads=1", "--plot-update=-1"]
     command += ["--disable-pynotify", "--log=@.log", "table.txt", SCRIPT.name]
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "Agg"}

@@ -7,7 +7,7 @@ Figures are drawn to files only; no window system is needed.
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.figure import Figure
-from membrane.files import replacing
+from membrane.plots import save
 
 DPI = 110
 ALPHA, BETA = r"$\alpha_c$", r"$\beta$"
@@ -105,7 +105,7 @@ def plot_curves(curves, ends, label, path):
         loc="upper left",
         bbox_to_anchor=(1, 1),
     )
-    _save(figure, path)
+    save(figure, path, dpi=DPI)
 
 
 def plot_swing(maps, words, path):
@@ -139,13 +139,7 @@ def plot_swing(maps, words, path):
         panel.set_yticks(range(len(betas)), [f"{b:g}" for b in betas])
         if np.isfinite(table).any():
             figure.colorbar(image, ax=panel)
-    _save(figure, path)
-
-
-def _save(figure, path):
-    """Write a picture whole or not at all: an earlier one stays where the disk is full."""
-    with replacing(path) as part:
-        figure.savefig(part, dpi=DPI, format="png")
+    save(figure, path, dpi=DPI)
 
 
 def three_digits(value):
