@@ -31,7 +31,7 @@ folder=$1 earlier=$3
 shift 4
 "$@"
 status=$?
-diff -r "$earlier" "$folder" --exclude=unfinished || exit 78
+diff -r "$earlier" "$folder" --exclude='unfinished*' || exit 78
 exit $status
 """
 
@@ -220,12 +220,12 @@ class TestEarlierResults(BadDayTest):
             process.send_signal(number)
             self.ends(process, TERMINATED, "^deploy: terminated")
 
-    def check_on_disk(self, size, mode, sentence):
+    def check_on_disk(self, size, mode, sentence, script="deploy.py", out="", options=SHORT):
         """How a run ends on a file system of its own, where earlier results are, too."""
         place = scratch() / "disk"
         place.mkdir(exist_ok=True)
-        deploy = ["yade", "-n", "-x", SCRIPTS / "deploy.py", *SHORT, "--out", place]
-        mounted = ["sh", "-c", ON_SMALL_DISK, "sh", place, size, earlier(), mode, *deploy]
+        run = ["yade", "-n", "-x", SCRIPTS / script, *options, "--out", place / out]
+        mounted = ["sh", "-c", ON_SMALL_DISK, "sh", place, size, earlier(), mode, *run]
         done = subprocess.run(
             ["unshare", "--map-root-user", "--mount", *map(str, mounted)],
             env=yade_environment(),
@@ -237,10 +237,21 @@ class TestEarlierResults(BadDayTest):
         self.ended(done.returncode, done.stderr, 1, sentence)
 
     def test_full_disk_leaves_them_whole(self):
+        for room in (1, 40):
+            sentence = "^deploy: .*[Nn]o space left on device"
+            self.check_on_disk(self.leaving(room), "rw", sentence)
+
+    def leaving(self, room):
+        """Size of a disk that leaves so many pages of 4 KiB beside the earlier results."""
         files = sum(path.stat().st_size // 4096 + 1 for path in earlier().rglob("*"))
-        for room in (1, 40):  # pages
-            size = f"{4 * (files + room)}k"
-            self.check_on_disk(size, "rw", "^deploy: .*[Nn]o space left on device")
+        return f"{4 * (files + room)}k"
+
+    def test_full_disk_ends_a_case_that_saves_itself(self):
+        options = [*SMALL, "--duration", "0.02", "--checkpoint-every", "0", "--no-pictures"]
+        for room in (2, 20):
+            sentence = "^case: .*checkpoint.*[Nn]o space left on device"
+            where = {"script": "case.py", "out": UNFINISHED, "options": options}
+            self.check_on_disk(self.leaving(room), "rw", sentence, **where)
 
     def test_read_only_disk_leaves_them_whole(self):
         self.check_on_disk("8m", "ro", "^deploy: .*Read-only file system")

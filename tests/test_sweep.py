@@ -87,6 +87,17 @@ def rows(folder):
         return 0
 
 
+def cut(path):
+    """Cut off the last bytes of a file."""
+    os.truncate(path, path.stat().st_size - 100)
+
+
+def zero(path):
+    """Zero the last bytes of a file."""
+    content = path.read_bytes()
+    path.write_bytes(content[:-100] + bytes(100))
+
+
 def kill_at(number, run):
     """Kill a command, which `run(halt=...)` starts, at the n-th change of an unfinished case."""
     halt = Halt(r"\.part/", number)
@@ -132,11 +143,15 @@ class TestCase(SweepTest):
         self.assertTrue((diverged() / sail.LAST_GOOD).exists())
 
     def test_killed_case_that_diverges_leaves_the_same_files(self):
+        """Also after a power cut that took what was not yet on the disk."""
         folder = scratch() / "killed" / "diverged"
         run = partial(start_case, folder, *TOO_LONG, *OFTEN)
-        for number in random.Random(7).sample(range(400), 2):
+        for number, damage in zip(random.Random(7).sample(range(100, 400), 2), (cut, zero)):
             kill_at(number, run)
             self.assertFalse(folder.exists())
+            saved = (part_of(folder) / "checkpoint").iterdir()
+            damage(max(path for path in saved if path.name.isdecimal()) / "scene.yade.gz")
+            damage(part_of(folder) / "history.csv")
         self.completes(run())
         self.same(diverged(), folder)
         self.assertFalse(part_of(folder).exists())
@@ -173,6 +188,20 @@ class TestCase(SweepTest):
             self.assertFalse(folder.exists())
         self.completes(start_case(folder, *options))
         self.same(quiet, folder)
+
+    def test_case_killed_just_when_it_has_its_name_is_finished(self):
+        folder = scratch() / "killed_late"
+        halt = Halt(r"begun\.json$", 2)  # first it is made, then removed
+        process = start_case(folder, *SHORT, "--no-pictures", halt=halt)
+        halt.wait(process)
+        kill(process)
+        before = {path: path.stat().st_mtime_ns for path in folder.rglob("*")}
+        self.completes(start_case(folder, *SHORT, "--no-pictures"))
+        after = {path: path.stat().st_mtime_ns for path in folder.rglob("*")}
+        gone = {path.name for path in before.keys() - after.keys()}
+        self.assertEqual(gone, {"begun.json", "lock"})
+        self.assertLessEqual(after.items(), before.items())
+        self.assertFalse(part_of(folder).exists())
 
     def test_finished_case_is_left_alone_and_another_is_refused(self):
         before = {path: path.stat().st_mtime_ns for path in diverged().rglob("*")}

@@ -87,9 +87,9 @@ def finish(p, folder, checkpoints, pictures):
             with suppress(OSError):  # a full disk, say, of which `error` tells
                 write_json(part / FAILURE, {"reason": str(error) or type(error).__name__})
             raise
+        settle(part)  # all that a result stands for
         write_json(part / RESULT, {**result, **about})
     shutil.rmtree(part / SAVED, ignore_errors=True)
-    settle(part)
     os.rename(part, folder)
     flush(folder.parent)
     tidy(folder)

@@ -122,6 +122,8 @@ def named(path):
         if error.filename is not None and TEMPORARY not in str(error.filename):
             raise
         reason = error.strerror or str(error) or type(error).__name__
+        if error.errno is None:
+            raise OSError(f"{path}: could not be written: {reason}") from error
         raise OSError(error.errno, f"could not be written: {reason}", str(path)) from error
 
 
@@ -172,6 +174,13 @@ def settle(folder):
     folder = Path(folder)
     for path in [*folder.rglob("*"), folder]:
         flush(path)
+
+
+def add_to_sum(checksum, path, size=-1):
+    """Add a file's first `size` bytes, -1: all, to a checksum of hashlib, and give that back."""
+    with open(path, "rb") as file:
+        checksum.update(file.read(size))
+    return checksum
 
 
 def flush(path):

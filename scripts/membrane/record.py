@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a running sail leaves behind: rows of measures, shapes, frames for the pictures."""
 
-import json
 from pathlib import Path
 
 import numpy as np
 from yade import wrapper as yade
 
 from . import measures
+from .files import write_json
 from .geometry import side_lengths, side_rows, triangle_areas
 from .hub import inertia
 from .history import read_history
-from .output import HistoryWriter, VtkSeries
+from .output import HistoryWriter, VtkSeries, is_whole_series, is_whole_table
 
 LEDGER_UNITS = {
     "kinetic_energy": "J",
@@ -79,6 +79,8 @@ HUB_UNITS = {
 }
 
 
+TABLE, SHAPES = "history.csv", "shapes"  # in the output folder
+
 THIRDS = np.full(3, 1 / 3)  # of the three sides of a triangle
 
 
@@ -112,14 +114,9 @@ class Recorder:
         self.mesh, self.sail, self.spin_rate = mesh, sail, spin_rate
         if sail.hub:
             self.units = {**self.units, **HUB_UNITS}
-        state = state or {
-            "history_size": None,
-            "times": [],
-            "first_lead": None,
-            "phases": [0.0] * 4,
-        }
-        table, shapes = Path(folder) / "history.csv", Path(folder) / "shapes"
-        self._history = HistoryWriter(table, self.units, state["history_size"])
+        state = state or {"history": None, "film": None, "first_lead": None, "phases": [0.0] * 4}
+        table, shapes = Path(folder) / TABLE, Path(folder) / SHAPES
+        self._history = HistoryWriter(table, self.units, state["history"])
         membrane = sail.membrane
         self._sides = np.array(membrane.sides)
         self._rest = np.array(membrane.restLengths)
@@ -133,19 +130,20 @@ class Recorder:
         pairs = np.stack([mesh.triangles, ahead], axis=-1).reshape(-1, 2)
         self._triangle_sides = side_rows(self._sides, pairs).reshape(-1, 3)
         self._rest_areas = triangle_areas(mesh.nodes, mesh.triangles)
-        self.frame_times = list(state["times"])
+        self.frame_times = list(state["film"]["times"]) if state["film"] else []
         self._film = VtkSeries(shapes, "film", mesh.triangles, self.frame_times)
         self._lines = VtkSeries(shapes, "sides", self._sides, self.frame_times)
-        (shapes / "fields.json").write_text(json.dumps(SHAPE_FIELDS, indent=2) + "\n")
+        write_json(shapes / "fields.json", SHAPE_FIELDS)
         self.rows, self.frames = _rows(table), self._film.positions()
         # Of the tips against the spool [rad]: at the first row, where its time is 0, and since.
         self._first_lead, self._phases = state["first_lead"], np.array(state["phases"])
 
     def state(self):
-        """What a Recorder needs to continue this one, ready for JSON."""
+        """What a Recorder needs to continue this one, ready for JSON; it is on the disk then."""
         return {
-            "history_size": self._history.size(),
-            "times": self.frame_times,
+            "history": self._history.state(),
+            "film": self._film.state(),
+            "sides": self._lines.state(),
             "first_lead": self._first_lead,
             "phases": self._phases.tolist(),
         }
@@ -247,6 +245,14 @@ class Recorder:
     def close(self):
         """Close history.csv."""
         self._history.close()
+
+
+def is_whole(folder, state):
+    """Whether a folder still holds what the `state` of a Recorder tells of."""
+    folder = Path(folder)
+    return is_whole_table(folder / TABLE, state["history"]) and all(
+        is_whole_series(folder / SHAPES, name, state[name]) for name in ("film", "sides")
+    )
 
 
 def _rows(table):

@@ -14,12 +14,13 @@ from yade import wrapper as yade_classes
 
 from . import __version__, measures, plots, report, scene
 from .case_folder import LAST_GOOD
+from .checkpoint import save_scene
 from .files import write_json
 from .fold import fold, fold_report
 from .mesh import mesh_of, tip_masses
 from .output import NotFinite
 from .progress import Progress
-from .record import Recorder
+from .record import Recorder, is_whole
 from .spool import add_spool
 
 # The spin-up may take longer steps than the run: no accuracy is asked of it.
@@ -268,7 +269,7 @@ def deploy(p, folder, pictures=True, checkpoints=None, page=True, look=look_away
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     watch = Stopwatch()
-    saved = checkpoints.load() if checkpoints else None
+    saved = checkpoints.load(lambda state: _is_whole(folder, state)) if checkpoints else None
     if saved:
         mesh, sail, facts = mesh_of(p), scene.loaded(), saved["facts"]
         watch = Stopwatch(saved["wall_time"])
@@ -350,6 +351,11 @@ def deploy(p, folder, pictures=True, checkpoints=None, page=True, look=look_away
     return {**summary, "wall_time": wall}
 
 
+def _is_whole(folder, saved):
+    """Whether what a checkpoint of `deploy` tells of is still in the folder."""
+    return saved["stage"] == SPIN_UP or is_whole(folder, saved["progress"]["recorder"])
+
+
 def begin(p):
     """Build the sail of `p` and check its time step.
 
@@ -397,7 +403,7 @@ def save_last_good(sail, folder):
     tags = yade_classes.Omega().tags
     for name in tags.keys():
         tags[name] = ""  # else two files of one state would differ by day and machine
-    yade_classes.Omega().save(str(path), quiet=True)
+    save_scene(path)
     return f"The last good state, of t = {time:.6g} s on YADE's clock, is in {path}"
 
 
