@@ -67,7 +67,7 @@ def main():
     cases = grid.grid(from_arguments(arguments), **axes)
     out = arguments.out.absolute()
     grid.refuse_other_results(out)
-    with batch.alone(out):
+    with batch.alone(out, tell):
         grid.plan(out, cases)
         batch.run(
             out,

@@ -5,6 +5,7 @@ import csv
 import json
 import os
 import random
+import re
 import resource
 import shutil
 import signal
@@ -13,6 +14,7 @@ import sys
 import unittest
 from dataclasses import replace
 from functools import lru_cache, partial
+from pathlib import Path
 
 import numpy as np
 from membrane import report, sail
@@ -214,6 +216,17 @@ class TestCase(SweepTest):
         after = {path: path.stat().st_mtime_ns for path in diverged().rglob("*")}
         self.assertEqual(after, before)
 
+    def test_another_case_does_not_take_the_place_of_one_that_is_not_finished(self):
+        folder = scratch() / "begun" / grid.CASES / "mine"
+        run = partial(start_case, folder, *SHORT, "--no-pictures", *OFTEN)
+        kill_at(60, run)
+        before = tree(part_of(folder))
+        said, _ = run("--beta", "3").communicate()
+        self.assertIn(f"{part_of(folder)} holds another case: beta = 30.0, not 3.0; to lose", said)
+        self.assertEqual(tree(part_of(folder)), before)
+        with self.assertRaisesRegex(ValueError, f"{part_of(folder)} holds another case"):
+            grid.plan(folder.parents[1], {folder.name: SailParameters()})
+
     def test_folder_of_something_else_is_refused_and_nobody_is_told_to_remove_it(self):
         folder = scratch() / "letters"
         folder.mkdir()
@@ -293,6 +306,25 @@ class TestSweep(SweepTest):
         for job in jobs:
             send(job, signal.SIGCONT)
         self.completes(process)
+        self.same(self.folder, folder)
+
+    def test_what_a_killed_sweep_leaves_running_is_ended(self):
+        folder = scratch() / "left_over"
+        halt = Halt("checkpoint/", 5)
+        process = start_sweep(folder, *self.OPTIONS, halt=halt)
+        job = halt.wait(process)
+        left = family(process.pid)[1:]
+        os.kill(process.pid, signal.SIGKILL)
+        process.wait()
+        halt.lift()
+        try:
+            said = self.completes(start_sweep(folder, *self.OPTIONS))
+            told = re.search("sweep: ended (.*), processes that a killed sweep had left here", said)
+            self.assertLessEqual({left[0], job}, set(map(int, told[1].split(", "))))
+            self.assertEqual([pid for pid in left if Path(f"/proc/{pid}").exists()], [])
+        finally:
+            for pid in left:
+                send(pid, signal.SIGKILL)
         self.same(self.folder, folder)
 
     def test_lost_case_runs_alone_and_again_if_it_is_killed(self):
@@ -507,6 +539,14 @@ class TestReport(SweepTest):
                 page = (folder / "report.html").read_text()
                 self.assertIn("1 damaged", page)
                 self.assertIn('"deployment_rate.png"', page)
+
+    def test_case_of_other_parameters_than_planned_is_not_complete(self):
+        folder, case = self.copy("of_another")
+        changed(folder / "sweep.json", lambda plan: plan["cases"][case.name].update(duration=0.2))
+        status, said = self.report(folder)
+        self.assertEqual(status, 1)
+        self.assertIn("1 of 2 cases are complete", said)
+        self.assertIn(f"{case.name} is damaged: {case} holds another case: duration = 0.1", said)
 
     def test_damaged_files_of_an_unfinished_case_do_not_end_the_report(self):
         for number, text in enumerate(("", "[1]", "{}", '{"reason": 3}', '{"parameters": [1]}')):

@@ -12,7 +12,17 @@ from contextlib import suppress
 from pathlib import Path
 
 from . import own, sail
-from .case_folder import BEGUN, COMPLETE, DIVERGED, FAILURE, RESULT, SAVED, finished, part_of
+from .case_folder import (
+    BEGUN,
+    COMPLETE,
+    DIVERGED,
+    FAILURE,
+    RESULT,
+    SAVED,
+    finished,
+    part_of,
+    refuse_another,
+)
 from .checkpoint import Checkpoints
 from .files import TEMPORARY, flush, read_object, settle, write_json
 
@@ -39,7 +49,8 @@ def run_case(p, folder, checkpoint_every=60.0, pictures=True):
     Raises
     ------
     ValueError
-        If `folder` holds another case, or the parameters are refused.
+        If `folder` holds another case, also one that is not finished, or the parameters are
+        refused.
     """
     folder = Path(folder).absolute()
     part = part_of(folder)
@@ -79,6 +90,7 @@ def finish(p, folder, checkpoints, pictures):
     """
     part = part_of(folder)
     about = {"parameters": p.as_dict(), "versions": sail.versions()}
+    refuse_another(folder, p.as_dict())
     begin(part, about)
     if not (part / RESULT).exists():
         try:

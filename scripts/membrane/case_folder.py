@@ -198,11 +198,37 @@ class Status:
         return self.state in (COMPLETE, DIVERGED)
 
 
-def look(folder):
-    """The Status of the case of a folder."""
+def refuse_another(folder, wanted):
+    """Raise ValueError if another case has begun to run for a folder, and has a checkpoint.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the case.
+    wanted : dict
+        Parameters that it must have.
+    """
+    part = part_of(folder)
+    begun, _ = _begun(part / BEGUN)
+    if begun and (part / SAVED).is_dir():
+        try:
+            _compare(part, begun, wanted)
+        except ValueError as error:
+            raise ValueError(f"{error}; to lose what it has done, remove {part}") from None
+
+
+def look(folder, wanted=None):
+    """The Status of the case of a folder; DAMAGED if it is finished with others than `wanted`.
+
+    Parameters
+    ----------
+    folder : path
+    wanted : dict, optional
+        Parameters that it must have.
+    """
     folder = Path(folder)
     if os.path.lexists(folder):
-        return _look_at_result(folder)
+        return _look_at_result(folder, wanted)
     part = part_of(folder)
     if not part.is_dir():
         return Status(folder, MISSING, "it has not been run yet")
@@ -218,14 +244,15 @@ def look(folder):
     return Status(folder, KILLED, reason, *about)
 
 
-def _look_at_result(folder):
+def _look_at_result(folder, wanted):
     """The Status of a case whose folder is there."""
     about = {}, {}
     try:
         found = _result(folder)
         about = found["parameters"], found["versions"]
+        _compare(folder, found["parameters"], wanted)
         history = _curves(folder, found)
-    except (BadFile, OSError) as error:
+    except (ValueError, OSError) as error:
         return Status(folder, DAMAGED, str(error), *about)
     outcome, reason, time = (found.get(name) for name in ("outcome", "reason", "time"))
     return Status(folder, outcome, reason or "", *about, time, history)

@@ -41,7 +41,7 @@ class Checkpoints:
         return time.monotonic() - self._last >= self.every
 
     def save(self, state):
-        """Save the scene and `state`, which must go into JSON. What it tells of must be on the disk.
+        """Save the scene and `state`, which must go into JSON and tell of what is on the disk.
 
         Raises
         ------

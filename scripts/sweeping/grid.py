@@ -7,6 +7,7 @@ from pathlib import PurePath
 
 from membrane import own
 from membrane.case_folder import PART, RESULT, Damaged, check_parameters, finished
+from membrane.case_folder import refuse_another
 from membrane.files import BadFile, read_object, shown, write_json
 from membrane.parameters import TABLE_2_CASES, SailParameters
 
@@ -64,12 +65,13 @@ def plan(folder, cases):
     Raises
     ------
     ValueError
-        If one is there already with other parameters.
+        If one is there already with other parameters, finished or not.
     """
     (folder / CASES).mkdir(parents=True, exist_ok=True)
     for name, p in cases.items():
         with suppress(Damaged):  # is told when its turn comes
             finished(folder / CASES / name, p.as_dict())
+        refuse_another(folder / CASES / name, p.as_dict())
     own.write_list(folder, own.SWEEP, RESULTS)
     write_json(folder / PLAN, {"cases": {name: p.as_dict() for name, p in cases.items()}})
 

@@ -59,7 +59,7 @@ def read(folder):
     """The Results of all cases of a sweep in `folder`, by rising alpha_c and beta."""
     found = []
     for place, planned in case_folders(folder).items():
-        status = look(place)
+        status = look(place, planned or None)
         status.parameters = status.parameters or planned
         is_complete = status.state == COMPLETE
         measured = measure(status.history) if is_complete else dict.fromkeys(MEASURES)
