@@ -16,7 +16,7 @@ import sweeping  # noqa: F401  (makes parts of membrane importable without YADE)
 from membrane.commands import plain_errors
 
 with plain_errors("workflow"):
-    from sweeping.config import check_file
+    from sweeping.config import check_file, check_words
 
 SNAKEFILE = Path(__file__).resolve().parent / "workflow" / "Snakefile"
 
@@ -24,10 +24,12 @@ SNAKEFILE = Path(__file__).resolve().parent / "workflow" / "Snakefile"
 def asked(options):
     """What options of snakemake ask for: files of configuration, cores, the folder to work in.
 
-    Attributes of the result are `configfile` and `cores` (lists of str) and `directory` (Path).
+    Attributes of the result are `configfile`, `config` and `cores` (lists of str) and `directory`
+    (Path).
     """
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     parser.add_argument("--configfile", "--configfiles", nargs="*", action="extend", default=[])
+    parser.add_argument("-C", "--config", nargs="*", action="extend", default=[])
     parser.add_argument("-c", "--cores", "-j", "--jobs", nargs="?", action="append", default=[])
     parser.add_argument("-d", "--directory", type=Path, default=Path())
     return parser.parse_known_args(options)[0]
@@ -72,6 +74,7 @@ def main():
     check_cores(wanted.cores)
     for path in wanted.configfile:
         check_file(path)
+    check_words(wanted.config)
     if not is_plan(options):
         lock(wanted.directory)
     command = ["snakemake", "--snakefile", str(SNAKEFILE), "--nolock", "--rerun-incomplete"]

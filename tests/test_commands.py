@@ -144,6 +144,12 @@ class TestTables(BadDayTest):
                 sentence = f"^case: .*line 2: {column} = {value} must be a"
                 self.ends(self.run_row("case.py", column, value), 1, sentence)
 
+    def test_description_that_would_lead_elsewhere_is_refused(self):
+        table = scratch() / "descriptions.table"
+        table.write_text("description beta\n.. 3\n")
+        process = start("deploy.py", *SMALL, YADE_BATCH=f"{table}:2")
+        self.ends(process, 1, "^deploy: description = '..' must be the name of a folder")
+
 
 class TestMissingPackages(BadDayTest):
     def without(self, *packages):

@@ -2,6 +2,7 @@
 """How the commands of scripts/ end where something is wrong: one sentence and an exit status."""
 
 import argparse
+import os
 import signal
 import sys
 from contextlib import contextmanager
@@ -19,7 +20,7 @@ def folder(text):
     """A Path from a word of the command line, which must not be empty."""
     if not text:
         raise argparse.ArgumentTypeError("must name a folder")
-    return Path(text)
+    return Path(os.path.expanduser(text))
 
 
 def count(text):

@@ -63,6 +63,20 @@ def read_text(path, largest=LARGEST):
         raise BadFile(path, f"byte {error.start}", "is no UTF-8 text") from None
 
 
+class GivenTwice(ValueError):
+    """A key that one object names twice: the message is the key."""
+
+
+def one_of_each(pairs):
+    """A dict of pairs of key and value; GivenTwice if a key is there twice."""
+    found = {}
+    for key, value in pairs:
+        if key in found:
+            raise GivenTwice(shown(key)[1:-1] if isinstance(key, str) else shown(key))
+        found[key] = value
+    return found
+
+
 def read_json(path, largest=LARGEST):
     """What a JSON file holds, by the letter of RFC 8259; an object must not name a key twice.
 
@@ -81,14 +95,6 @@ def read_json(path, largest=LARGEST):
             raise BadFile(path, "", f"holds {text[:SHOWN]}, too large a number")
         return value
 
-    def one_of_each(pairs):
-        found = dict(pairs)
-        if len(found) < len(pairs):
-            seen = set()
-            twice = next(name for name, _ in pairs if name in seen or seen.add(name))
-            raise BadFile(path, shown(twice)[1:-1], "is given twice in one object")
-        return found
-
     text = read_text(path, largest)
     try:
         return json.loads(
@@ -96,6 +102,8 @@ def read_json(path, largest=LARGEST):
         )
     except BadFile:
         raise
+    except GivenTwice as error:
+        raise BadFile(path, str(error), "is given twice in one object") from None
     except json.JSONDecodeError as error:
         place = f"line {error.lineno}, column {error.colno}"
         raise BadFile(path, place, f"is no JSON: {error.msg}") from None

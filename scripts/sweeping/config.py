@@ -3,12 +3,13 @@
 
 import json
 import os
+from contextlib import suppress
 from dataclasses import fields
 from itertools import product
 from pathlib import Path
 
 import yaml
-from membrane.files import BadFile, read_text, shown
+from membrane.files import BadFile, GivenTwice, one_of_each, read_text, shown
 from membrane.parameters import (
     TABLE_2_CASES,
     TABLE_2_DURATION,
@@ -39,6 +40,8 @@ def read_config(path):
     text = read_text(path)
     try:
         found = _parsed(text)
+    except GivenTwice as error:
+        raise BadFile(path, str(error), "is given twice") from None
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         place = f"line {mark.line + 1}, column {mark.column + 1}" if mark else ""
@@ -56,9 +59,22 @@ def read_config(path):
 def _parsed(text):
     """What a text of JSON or else of YAML says."""
     try:
-        return json.loads(text)
+        return json.loads(text, object_pairs_hook=one_of_each)
+    except GivenTwice:
+        raise
     except ValueError:
-        return yaml.safe_load(text)
+        return yaml.load(text, _Loader)
+
+
+class _Loader(yaml.SafeLoader):
+    """YAML in which one object must not name a key twice."""
+
+    def compose_mapping_node(self, anchor):
+        node = super().compose_mapping_node(anchor)
+        keys = (key for key, _ in node.value if isinstance(key, yaml.ScalarNode))
+        words = (key for key in keys if key.tag != "tag:yaml.org,2002:merge")  # <<
+        one_of_each((self.construct_object(word), None) for word in words)
+        return node
 
 
 def check_file(path):
@@ -97,6 +113,17 @@ def check(config):
     return {case_name(case): case for case in cases}
 
 
+def check_words(words):
+    """Raise ValueError if words of the form NAME=VALUE, with values in YAML, give a name twice."""
+    try:
+        one_of_each(word.partition("=")[::2] for word in words)
+        for word in words:
+            with suppress(yaml.YAMLError):  # then it is a text
+                _parsed(word.partition("=")[2])
+    except GivenTwice as error:
+        raise ValueError(f"--config: {error} is given twice") from None
+
+
 def check_part(config):
     """Raise ValueError, in one sentence, if a configuration or a part of one cannot be used."""
     for name in config:
@@ -117,7 +144,16 @@ def check_part(config):
 
 def common(config):
     """Options that all cases of a configuration share."""
-    return {"duration": TABLE_2_DURATION, **(config.get("options") or {})}
+    found = {"duration": TABLE_2_DURATION, **(config.get("options") or {})}
+    if "parameters" in found:
+        found["parameters"] = os.path.expanduser(found["parameters"])
+    return found
+
+
+def folder(config):
+    """Name of the folder of the results, which no command takes for an option."""
+    name = os.path.expanduser(config["out"])
+    return os.path.abspath(name) if name.startswith("-") else name
 
 
 def check_places(config):
@@ -125,14 +161,13 @@ def check_places(config):
 
     They are relative to the present folder.
     """
-    out = Path(config["out"])
+    out = Path(folder(config))
     refuse_other_results(out)
     there = next(path for path in (out, *out.parents) if path.exists())
     if not (there.is_dir() and os.access(there, os.W_OK)):
         raise ValueError(f"out = {shown(config['out'])}: {there} is no folder to write to")
-    options = config.get("options") or {}
-    if "parameters" in options:
-        read_values(options["parameters"])
+    if "parameters" in common(config):
+        read_values(common(config)["parameters"])
 
 
 def _check_options(options):
