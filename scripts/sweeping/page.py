@@ -117,7 +117,7 @@ are missing; the sweep's command runs them, and them alone.
 
 
 def place(path):
-    """A path relative to the page as a link has it: no name in it can be taken for more than that."""
+    """A path relative to the page as a link has it: no name can be taken for more than a name."""
     return quote(os.fsencode(path))
 
 
