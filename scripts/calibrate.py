@@ -15,9 +15,10 @@ import time
 from pathlib import Path
 
 import sweeping  # noqa: F401  (makes parts of membrane importable without YADE)
-from membrane.commands import folder, plain_errors
+from membrane.commands import file, folder, plain_errors
 from membrane.files import write_json
 from membrane.own import CALIBRATION
+from membrane.parameters import whole
 from membrane.unfinished import new_results
 
 with plain_errors("calibrate"):
@@ -43,7 +44,7 @@ def command_line():
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,  # --alpha is the scene's
     )
-    parser.add_argument("target", type=Path, metavar="TARGET", help="table with the curve")
+    parser.add_argument("target", type=file, metavar="TARGET", help="table with the curve")
     parser.add_argument(
         "--column",
         action="append",
@@ -76,7 +77,11 @@ def command_line():
         help="default: out/calibration",
     )
     parser.add_argument(
-        "--seed", type=int, default=0, metavar="N", help="of the points that are tried (default 0)"
+        "--seed",
+        type=whole,
+        default=0,
+        metavar="N",
+        help="of the points that are tried (default 0)",
     )
     arguments, scene = parser.parse_known_args()
     for option in OURS:
@@ -155,7 +160,13 @@ def write_runs(path, simulate, names, target):
         for point, curves in zip(simulate.points, simulate.curves)
     ]
     np.savetxt(
-        path, rows, delimiter=",", fmt="%.6g", header=",".join([*names, "misfit"]), comments=""
+        path,
+        rows,
+        delimiter=",",
+        fmt="%.6g",
+        header=",".join([*names, "misfit"]),
+        comments="",
+        encoding="utf-8",
     )
 
 

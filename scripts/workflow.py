@@ -16,6 +16,7 @@ import sweeping  # noqa: F401  (makes parts of membrane importable without YADE)
 from membrane.commands import plain_errors
 
 with plain_errors("workflow"):
+    from membrane.parameters import check_name
     from sweeping.config import check_file, check_words
 
 SNAKEFILE = Path(__file__).resolve().parent / "workflow" / "Snakefile"
@@ -72,7 +73,9 @@ def main():
     options = sys.argv[1:] or ["--cores", "all"]
     wanted = asked(options)
     check_cores(wanted.cores)
+    check_name(wanted.directory)
     for path in wanted.configfile:
+        check_name(path)
         check_file(path)
     check_words(wanted.config)
     if not is_plan(options):

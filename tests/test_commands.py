@@ -263,6 +263,27 @@ class TestEarlierResults(BadDayTest):
         self.check_on_disk("8m", "ro", "^deploy: .*Read-only file system")
 
 
+class TestReadOnlyBuild(BadDayTest):
+    @unittest.skipUnless((ROOT / "build" / "python").is_dir(), "the build is elsewhere")
+    def test_without_a_home_settings_go_to_a_folder_of_the_users(self):
+        read_only = 'mount --bind "$0" "$0" && mount -o remount,bind,ro "$0" || exit 77; exec "$@"'
+        report = [SCRIPTS / "run.sh", "report", scratch() / "nowhere"]
+        inside = ["sh", "-c", read_only, ROOT / "build", *report]
+        environment = {**os.environ, "TMPDIR": str(scratch())}
+        environment.pop("HOME", None)
+        done = subprocess.run(
+            ["unshare", "--map-root-user", "--mount", *map(str, inside)],
+            env=environment,
+            capture_output=True,
+            text=True,
+        )
+        if done.returncode == 77 or done.stderr.startswith("unshare"):
+            self.skipTest("no file system can be mounted here")
+        self.ended(done.returncode, done.stderr, 1, "^report: .*nowhere/summary.json|viewer")
+        (home,) = scratch().glob("membrane-home-*")
+        self.assertEqual(home.stat().st_mode & 0o777, 0o700)
+
+
 class TestOutput(BadDayTest):
     def test_output_that_nobody_reads_is_a_sentence(self):
         halt = Halt(r"summary\.json")

@@ -117,6 +117,8 @@ BAD = {
     "options: {checkpoint_every: -1}": "options: checkpoint_every = -1 s must be >= 0",
     "threads: many": "threads = 'many' must be a whole number >= 1",
     "memory: 0": "memory = 0 must be a whole number >= 1",
+    "threads: 1e400": "threads = '1e400' must be a whole number >= 1",
+    '{"out": "\\udcff"}': "must be UTF-8",
     "minutes: 1.5": "minutes = 1.5 must be a whole number >= 1",
     "out: 3": "out = 3 must be the name of a folder",
     "out: '{case}'": "out = '{case}' must be the name of a folder",
@@ -224,7 +226,8 @@ class TestBadConfiguration(CommandTest):
 
     def test_numbers_as_yaml_takes_them_for_texts_are_values(self):
         folder = new_folder("texts")
-        content = "grid: {beta: [1e1]}\noptions: {duration: 1e-2, no_pictures: true}\n"
+        content = "grid: {beta: [1e1]}\noptions: {duration: 1e-2, no_pictures: true}\nmemory: 1e3\n"
+        content += "threads: 1.0\n"
         (folder / "mine.yaml").write_text(content)
         for plan in (["--dry-run", "--printshellcmds"], ["-np"], ["-pn"]):
             done = self.start(folder, "--configfile", "mine.yaml", *plan)

@@ -94,7 +94,8 @@ class Deployments:
             done = subprocess.run(
                 ["yade", "-n", "-x", "-j1", str(DEPLOY), *self.options, *self._own(values, folder)],
                 capture_output=True,
-                text=True,
+                encoding="utf-8",
+                errors="replace",
             )
             diverged = (Path(folder) / LAST_GOOD).exists()
             if done.returncode and not diverged:
@@ -119,7 +120,7 @@ class Deployments:
 
     def _read(self, path):
         """Curves (C, S) of a history.csv at the target's times."""
-        table = np.genfromtxt(path, delimiter=",", names=True)
+        table = np.genfromtxt(path, delimiter=",", names=True, encoding="utf-8")
         rows = np.array([table[name] for name in self.target.columns])
         return CubicSpline(table["time"], rows, axis=1)(self.target.times)
 

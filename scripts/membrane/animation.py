@@ -102,7 +102,7 @@ def virtual_display():
     os.close(writing)
     before = os.environ.get("DISPLAY")
     try:
-        with os.fdopen(reading) as answer:
+        with os.fdopen(reading, encoding="utf-8") as answer:
             number = answer.readline().strip()
         if not number:
             raise RuntimeError(f"Xvfb ended with status {server.wait()}")
@@ -373,7 +373,8 @@ def _encode(path, pictures):
         encoder.communicate()
         raise
     if encoder.returncode:
-        raise RuntimeError(f"ffmpeg failed on {path}: {said.decode().strip()[-300:]}")
+        said = said.decode(errors="replace").strip()
+        raise RuntimeError(f"ffmpeg failed on {path}: {said[-300:]}")
 
 
 def _write_gif(film, gif, pictures):
@@ -386,7 +387,9 @@ def _write_gif(film, gif, pictures):
             "[b][p]paletteuse=dither=bayer:bayer_scale=4"
         )
         command = _ffmpeg("-i", film, "-vf", look, "-r", f"{RATE}/{skip}", "-f", "gif", gif)
-        done = subprocess.run(command, capture_output=True, text=True, start_new_session=True)
+        done = subprocess.run(
+            command, capture_output=True, encoding="utf-8", errors="replace", start_new_session=True
+        )
         if done.returncode:
             raise RuntimeError(f"ffmpeg failed on {gif}: {done.stderr.strip()[-300:]}")
         if gif.stat().st_size <= GIF_LARGEST:

@@ -280,7 +280,7 @@ def _read(path):
 def _locked(path):
     """Whether a process holds the lock of a case."""
     try:
-        with open(path) as lock:
+        with open(path, "rb") as lock:
             fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
     except FileNotFoundError:
         return False

@@ -55,7 +55,8 @@ def held(folder, busy=None, links=()):
 
 def _open_lock(folder):
     """Descriptor of the lock of a folder; both are made if they are missing."""
-    folder.parent.mkdir(parents=True, exist_ok=True)
+    with suppress(FileExistsError):  # if it is a file, what follows says so
+        folder.parent.mkdir(parents=True)
     while True:
         with suppress(FileExistsError):
             folder.mkdir()

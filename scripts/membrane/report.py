@@ -114,7 +114,7 @@ def write_report(folder):
     folder = Path(folder)
     if not TEMPLATE.is_file():
         raise NoViewer("its viewer is not built; `scripts/run.sh viewer` does it, with npm")
-    before, after = TEMPLATE.read_text().split(PLACE)
+    before, after = TEMPLATE.read_text(encoding="utf-8").split(PLACE)
     # "<" could end the page's script.
     content = json.dumps(run_data(folder), allow_nan=False).replace("<", "\\u003c")
     page = folder / PAGE

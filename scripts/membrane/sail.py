@@ -19,6 +19,7 @@ from .files import write_json
 from .fold import fold, fold_report
 from .mesh import mesh_of, tip_masses
 from .output import NotFinite
+from .parameters import check_steps
 from .progress import Progress
 from .record import Recorder, is_whole
 from .spool import add_spool
@@ -202,9 +203,11 @@ def march(p, recorder, note, look=look_away, begun=None, keep=None):
     keep : callable, optional
         Called after each row but the last with its number, which a later `begun` takes.
     """
-    stride = max(1, round(p.history_interval / p.dt))
+    check_steps(p.duration, p.dt)
+    stride = max(1, round(min(p.history_interval, p.duration) / p.dt))
     rows = max(1, round(p.duration / (stride * p.dt)))
-    between = round(p.shapes_interval / (stride * p.dt)) if p.shapes_interval > 0 else 0
+    shapes = min(p.shapes_interval, p.duration)
+    between = max(1, round(shapes / (stride * p.dt))) if shapes > 0 else 0
     progress = Progress("deploying", p.duration)
     if begun is None:
         scene.advance(1)  # a step's measures belong to the time at which it began
@@ -214,7 +217,7 @@ def march(p, recorder, note, look=look_away, begun=None, keep=None):
         scene.advance(stride, recorder.sail.forces if row - 1 == begun else None)
         now = row * stride * p.dt
         measured = recorder.history(now)
-        if row == rows or (between and row % max(1, between) == 0):
+        if row == rows or (between and row % between == 0):
             recorder.shape(now)
         progress.update(now, "  " + note(measured))
         look(recorder.sail)

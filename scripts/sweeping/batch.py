@@ -148,7 +148,7 @@ def _batch(folder, cases, left, jobs, checkpoint_every, pictures):
     environment |= [_family(folder).split("=", 1)]
     environment.pop("OMP_NUM_THREADS", None)
     progress = _CaseProgress(folder, cases)
-    with open(batch / "batch.log", "a") as log:
+    with open(batch / "batch.log", "ab") as log:
         batch_process = subprocess.Popen(
             command,
             cwd=batch,
@@ -219,7 +219,11 @@ def _share(folder, duration):
 def _last_words(folder, name):
     """What a job said last that was stopped, for the user; "" if nothing."""
     try:
-        lines = (folder / BATCH / f"{name}.log").read_text(errors="replace").splitlines()
+        lines = (
+            (folder / BATCH / f"{name}.log")
+            .read_text(encoding="utf-8", errors="replace")
+            .splitlines()
+        )
     except FileNotFoundError:
         return ""
     if any("JOB SUMMARY" in line for line in lines):

@@ -11,10 +11,13 @@ from pathlib import Path
 import yaml
 from membrane.files import BadFile, GivenTwice, one_of_each, read_text, shown
 from membrane.parameters import (
+    PARSERS,
     TABLE_2_CASES,
     TABLE_2_DURATION,
     SailParameters,
+    check_name,
     read_values,
+    whole,
 )
 
 from .grid import case_name, refuse_other_results
@@ -22,7 +25,7 @@ from .grid import case_name, refuse_other_results
 KINDS = {item.name: item.type for item in fields(SailParameters)}
 WORDS = {
     bool: "true or false",
-    int: "a whole number, in digits alone",
+    int: "a whole number",
     float: "a number",
     str: "a word",
 }
@@ -129,13 +132,11 @@ def check_part(config):
     for name in config:
         if name not in NAMES:
             raise ValueError(f"{_word(name)} is nothing to configure; known are {', '.join(NAMES)}")
-    for name in NUMBERS:
-        value = config.get(name, 1)
-        if isinstance(value, bool) or not isinstance(value, int) or value < 1:
-            raise ValueError(f"{name} = {shown(value)} must be a whole number >= 1")
+    numbers(config)
     out = config.get("out", "out")
     if not isinstance(out, str) or not out.strip() or set(out) & set("{}\0"):
         raise ValueError(f"out = {shown(out)} must be the name of a folder, without {{ and }}")
+    check_name(out)
     if config.get("options") is not None:
         _check_options(config["options"])
     if config.get("grid") is not None:
@@ -147,6 +148,19 @@ def common(config):
     found = {"duration": TABLE_2_DURATION, **(config.get("options") or {})}
     if "parameters" in found:
         found["parameters"] = os.path.expanduser(found["parameters"])
+    return found
+
+
+def numbers(config):
+    """What a cluster gives each case: NUMBERS by name, int, those of them that are configured."""
+    found = {}
+    for name in set(NUMBERS) & set(config):
+        value = config[name]
+        try:
+            if isinstance(value, bool) or (found.setdefault(name, whole(str(value)))) < 1:
+                raise ValueError
+        except ValueError:
+            raise ValueError(f"{name} = {shown(value)} must be a whole number >= 1") from None
     return found
 
 
@@ -213,7 +227,7 @@ def _typed(place, name, value):
         if is_switch != (kind is bool) or not isinstance(value, (int, float, str)):
             raise ValueError
         # YAML takes 1e3 for a text, and the command line gets texts.
-        found = value if is_switch else kind(str(value))
+        found = value if is_switch else PARSERS[kind](str(value))
     except ValueError:
         raise ValueError(f"{place}: {name} = {shown(value)} must be {WORDS[kind]}") from None
     try:

@@ -9,7 +9,7 @@ from membrane import own
 from membrane.case_folder import PART, RESULT, Damaged, check_parameters, finished
 from membrane.case_folder import refuse_another
 from membrane.files import BadFile, read_object, shown, write_json
-from membrane.parameters import TABLE_2_CASES, SailParameters
+from membrane.parameters import TABLE_2_CASES, SailParameters, check_name
 
 AXES = tuple(TABLE_2_CASES)  # alpha_crease, beta
 PLAN = "sweep.json"  # what a sweep consists of
@@ -119,7 +119,10 @@ def case_folders(folder):
     for level in ("*", "*/*"):
         parts = (path for path in folder.glob(level + PART) if path.is_dir())
         found |= {path.with_name(path.name.removesuffix(PART)) for path in parts}
-    return {**planned, **{path: {} for path in sorted(found - set(planned))}}
+    cases = {**planned, **{path: {} for path in sorted(found - set(planned))}}
+    for path in cases:
+        check_name(path)
+    return cases
 
 
 def table(cases, own):
