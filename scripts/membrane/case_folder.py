@@ -106,7 +106,7 @@ def _result(folder):
 
 
 def _curves(folder, found):
-    """The history.csv of a case with this case.json; None if it diverged before the first row.
+    """CURVES of a case with this case.json; None if it diverged before the first row.
 
     Raises
     ------
@@ -127,7 +127,7 @@ def _curves(folder, found):
         row = int(np.argmax(np.diff(history["time"]) <= 0)) + 1
         raise BadFile(path, f"line {row + 2}, time", "must be later than in the line before")
     if len(history["time"]):
-        return history
+        return {name: history[name].copy() for name in CURVES}  # the others are not kept
     if is_complete:
         raise BadFile(path, "", "has no row")
     return None
@@ -176,7 +176,7 @@ class Status:
     time : float or None
         When it diverged, after the release [s]; None if before.
     history : dict of (S,) float or None
-        Columns of the history.csv of a finished case, by name; None where there are no rows.
+        CURVES of a finished case by name; None where there are no rows.
     """
 
     folder: Path

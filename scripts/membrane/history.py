@@ -27,13 +27,19 @@ def read_history(path, wanted=None):
     text = read_text(path)
     if not text.endswith("\n"):
         raise BadFile(path, f"line {text.count(chr(10)) + 1}", "is cut off")
+    table = csv.reader(io.StringIO(text, newline=""), strict=True)
     try:
-        names, *rows = csv.reader(io.StringIO(text, newline=""), strict=True)
+        names = next(table)
+        if not all(names) or len(set(names)) < len(names) or any(map(is_value, names)):
+            raise BadFile(path, "line 1", "must name every column, each otherwise")
+        chosen = {name: i for i, name in enumerate(names) if wanted is None or name in wanted}
+        if len(chosen) == len(names):
+            values = _numbers(text, len(names))
+            if values is not None:
+                return dict(zip(names, values))
+        rows = list(table)
     except csv.Error as error:
         raise BadFile(path, "", f"is no table: {error}") from None
-    if not all(names) or len(set(names)) < len(names) or any(map(is_value, names)):
-        raise BadFile(path, "line 1", "must name every column, each otherwise")
-    chosen = {name: i for i, name in enumerate(names) if wanted is None or name in wanted}
     for number, row in enumerate(rows, start=2):
         if len(row) != len(names):
             raise BadFile(path, f"line {number}", f"has {len(row)} values for {len(names)} columns")
@@ -42,6 +48,19 @@ def read_history(path, wanted=None):
                 reason = f"is {shown(value)}; must be a finite number"
                 raise BadFile(path, f"line {number}, {shown(name)[1:-1]}", reason)
     return {name: np.array([row[i] for row in rows], dtype=float) for name, i in chosen.items()}
+
+
+def _numbers(text, columns):
+    """Columns (`columns`, S) of a table of finite numbers, read at once; None if it is none."""
+    _, *rows, _ = text.split("\n")
+    content = ",".join(rows)
+    if "_" in content or any(row.count(",") != columns - 1 for row in rows):
+        return None
+    try:
+        table = np.array(list(map(float, content.split(",")))).reshape(len(rows), columns)
+    except ValueError:
+        return None
+    return table.T.copy() if np.isfinite(table).all() else None
 
 
 def is_value(text):

@@ -119,9 +119,9 @@ class VtkSeries:
         flush(self.folder)
         return {"times": [time for time, _ in self.frames], "sum": self._sum.hexdigest()}
 
-    def positions(self):
-        """Positions of the nodes [m] in each frame, (N, 3) double, read back from the files."""
-        return [read_frame(self.folder / name)[0].copy() for _, name in self.frames]
+    def positions(self, number):
+        """Positions (N, 3) [m] of the nodes in a frame, double, read back from its file."""
+        return read_frame(self.folder / self.frames[number][1])[0].copy()
 
     def _list_last_frame(self):
         """Add the last frame to the .pvd file, over its closing lines and in one piece.

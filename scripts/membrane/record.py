@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a running sail leaves behind: rows of measures, shapes, frames for the pictures."""
 
+from array import array
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -100,10 +102,8 @@ class Recorder:
 
     Attributes
     ----------
-    rows : list of dict
-        What was written to history.csv.
-    frames : list of (N, 3) float
-        Positions [m] at each shape.
+    frames : Frames
+        Positions (N, 3) [m] at each shape.
     frame_times : list of float
         Their times [s].
     """
@@ -134,7 +134,8 @@ class Recorder:
         self._film = VtkSeries(shapes, "film", mesh.triangles, self.frame_times)
         self._lines = VtkSeries(shapes, "sides", self._sides, self.frame_times)
         write_json(shapes / "fields.json", SHAPE_FIELDS)
-        self.rows, self.frames = _rows(table), self._film.positions()
+        self._columns = {name: array("d", values) for name, values in read_history(table).items()}
+        self.frames = Frames(self._film)
         # Of the tips against the spool [rad]: at the first row, where its time is 0, and since.
         self._first_lead, self._phases = state["first_lead"], np.array(state["phases"])
 
@@ -153,7 +154,8 @@ class Recorder:
         x = self.sail.last_positions()
         row = {"time": time, **self.measured(time, x), **self._booked(x)}
         self._history.write(row)
-        self.rows.append(row)
+        for name, column in self._columns.items():
+            column.append(row[name])
         return row
 
     def measured(self, time, x):
@@ -224,7 +226,6 @@ class Recorder:
         lines = {**fields, "fold": self._signs, "kind": self._kinds}
         self._film.write(time, x, _single_precision(self._of_triangles(x, fields)))
         self._lines.write(time, x, _single_precision(lines))
-        self.frames.append(x)
         self.frame_times.append(time)
 
     def _of_triangles(self, x, fields):
@@ -239,8 +240,8 @@ class Recorder:
         }
 
     def columns(self):
-        """The rows as arrays (S,) by name."""
-        return {name: np.array([row[name] for row in self.rows]) for name in self.units}
+        """What was written to history.csv: arrays (S,) by name."""
+        return {name: np.array(values) for name, values in self._columns.items()}
 
     def close(self):
         """Close history.csv."""
@@ -255,10 +256,17 @@ def is_whole(folder, state):
     )
 
 
-def _rows(table):
-    """Rows of a history.csv so far, each a dict."""
-    columns = read_history(table)
-    return [dict(zip(columns, row)) for row in zip(*columns.values())]
+class Frames(Sequence):
+    """Shapes (N, 3) [m] of a series, each read back when it is asked for: all would fill memory."""
+
+    def __init__(self, series):
+        self._series = series
+
+    def __len__(self):
+        return len(self._series.frames)
+
+    def __getitem__(self, number):
+        return self._series.positions(number)
 
 
 def _single_precision(fields):

@@ -313,7 +313,7 @@ def deploy(p, folder, pictures=True, checkpoints=None, page=True, look=look_away
     except (RuntimeError, NotFinite) as error:
         time_reached = (yade_classes.Omega().iter - facts["release_step"]) * p.dt
         saying = save_last_good(sail, folder)
-        if pictures and recorder.rows:
+        if pictures and recorder.frames:
             draw(mesh, recorder, recorder.columns(), folder)
         raise Diverged(RUN, time_reached, str(error), saying) from error
     finally:
@@ -424,7 +424,7 @@ def draw(mesh, recorder, history, folder):
     """
     plots.plot_deployment(history, folder / "deployment.png")
     times = np.array(recorder.frame_times)
-    rates = [measures.deployment_rate(mesh, x) for x in recorder.frames]
+    rates = np.interp(times, history["time"], history["deployment_rate"])  # of its rows
     picks = instants(times, int(np.argmax(rates)))
     frames = [recorder.frames[i] for i in picks]
     plots.plot_shapes(frames, mesh, folder / "shapes.png", times[picks])

@@ -41,7 +41,7 @@ class Result:
 
     @property
     def history(self):
-        """Columns (S,) of its history.csv by name; None where there is none."""
+        """CURVES (S,) of its history.csv by name; None where there are none."""
         return self.status.history
 
     @property
