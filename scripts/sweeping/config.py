@@ -154,13 +154,14 @@ def common(config):
 def numbers(config):
     """What a cluster gives each case: NUMBERS by name, int, those of them that are configured."""
     found = {}
-    for name in set(NUMBERS) & set(config):
+    for name in (name for name in NUMBERS if name in config):
         value = config[name]
         try:
-            if isinstance(value, bool) or (found.setdefault(name, whole(str(value)))) < 1:
-                raise ValueError
+            found[name] = 0 if isinstance(value, bool) else whole(str(value))
         except ValueError:
-            raise ValueError(f"{name} = {shown(value)} must be a whole number >= 1") from None
+            found[name] = 0
+        if found[name] < 1:
+            raise ValueError(f"{name} = {shown(value)} must be a whole number >= 1")
     return found
 
 
