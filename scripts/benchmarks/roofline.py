@@ -430,7 +430,7 @@ def plot(found, points, known, path):
             f"{name}, {bandwidth:.0f} GB/s",
             rotation=math.degrees(math.atan(bandwidth)),
             rotation_mode="anchor",
-            transform_rotates_encoding="utf-8",
+            transform_rotates_text=True,
             va="top" if below else "bottom",
             fontsize=9,
         )

@@ -93,6 +93,7 @@ def _claim(lock, folder, links):
         if content or not is_file or os.listdir(folder) != [LOCK]:
             raise ValueError(_not_ours(folder))
         os.pwrite(lock, OURS, 0)
+        os.fsync(lock)  # before anything else is in it: after a power cut, too, it is ours
     for path in folder.rglob("*"):
         if path.is_symlink() and str(path.relative_to(folder)) not in links:
             raise ValueError(f"{path} is a symbolic link, which is not followed: remove it")

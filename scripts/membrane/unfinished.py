@@ -8,6 +8,7 @@ from pathlib import Path
 
 from . import own
 from .case_folder import PART
+from .files import flush, settle
 
 UNFINISHED = "unfinished"  # folder within the output folder
 GOING, GONE = "earlier.part", "earlier"  # where earlier results are while they are exchanged
@@ -85,6 +86,8 @@ def _swap(folder, part, kind):
     own.refuse_others(folder, kind, made)
     earlier = own.listed(folder, kind)
     own.write_list(part, kind, made)  # which goes the way of the results
+    if earlier:  # they are removed for what must be on the disk
+        settle(part)
     try:
         (part / GOING).mkdir()
         for name in {*earlier, own.LIST}:
@@ -108,6 +111,7 @@ def _settle(folder, part):
         for path in own.content(part):
             if path.name != GONE:
                 _move(path, folder)
+        flush(folder)
         shutil.rmtree(part / GONE)
 
 
