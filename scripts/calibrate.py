@@ -17,8 +17,10 @@ import time
 from pathlib import Path
 
 import sweeping  # noqa: F401  (makes parts of membrane importable without YADE)
-from membrane.commands import folder, plain_errors
+from membrane.commands import file, folder, plain_errors
 from membrane.files import write_json
+from membrane.own import CALIBRATION
+from membrane.parameters import whole
 from membrane.unfinished import new_results
 
 with plain_errors("calibrate"):
@@ -44,7 +46,7 @@ def command_line():
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,  # --alpha is the scene's
     )
-    parser.add_argument("target", type=Path, metavar="TARGET", help="table with the curve")
+    parser.add_argument("target", type=file, metavar="TARGET", help="table with the curve")
     parser.add_argument(
         "--column",
         action="append",
@@ -77,7 +79,11 @@ def command_line():
         help="default: out/calibration",
     )
     parser.add_argument(
-        "--seed", type=int, default=0, metavar="N", help="of the points that are tried (default 0)"
+        "--seed",
+        type=whole,
+        default=0,
+        metavar="N",
+        help="of the points that are tried (default 0)",
     )
     arguments, scene = parser.parse_known_args()
     for option in OURS:
@@ -156,7 +162,13 @@ def write_runs(path, simulate, names, target):
         for point, curves in zip(simulate.points, simulate.curves)
     ]
     np.savetxt(
-        path, rows, delimiter=",", fmt="%.6g", header=",".join([*names, "misfit"]), comments=""
+        path,
+        rows,
+        delimiter=",",
+        fmt="%.6g",
+        header=",".join([*names, "misfit"]),
+        comments="",
+        encoding="utf-8",
     )
 
 
@@ -183,7 +195,9 @@ def main():
 
     target = read_target(arguments.target, arguments.column or (), arguments.until)
     simulate = Deployments(names, target, [*scene, *held], tell)
-    with new_results(arguments.out) as part:  # a folder that cannot be is refused before the runs
+    with new_results(
+        arguments.out, CALIBRATION
+    ) as part:  # a folder that cannot be is refused before the runs
         kept = arguments.out / KEPT
         count = simulate.keep(kept)
         if count:

@@ -174,12 +174,20 @@ bundle_viewer() (
 
 # The viewer, if it can be had; all but report.html works without.
 viewer_if_possible() { bundle_viewer || (($? == 1)) || die "the viewer could not be bundled"; }
+
+# Sets HOME to a folder of this user's alone, the same each time, where the build cannot be written to.
+new_home() {
+    HOME=${TMPDIR:-/tmp}/membrane-home-$(id -u)
+    mkdir -m 700 "$HOME" 2>/dev/null || true
+    [[ -d $HOME && ! -L $HOME && -O $HOME && -w $HOME ]] || die "HOME is not set, and $HOME is no folder to write to"
+}
+
 # Sets what YADE needs to run and to find the plugin.
 set_environment() {
     # YADE writes its settings below HOME, and stops without one.
     if [[ ! -w ${HOME:-/nonexistent} ]]; then
         export HOME=$build/home
-        mkdir -p "$HOME"
+        if ! { mkdir -p "$HOME" && [[ -w $HOME ]]; } 2>/dev/null; then new_home; fi
     fi
     export PYTHONPATH=$build/python${PYTHONPATH:+:$PYTHONPATH} PYTHONUNBUFFERED=1 MPLBACKEND=Agg
 }

@@ -7,7 +7,7 @@ Run it by `scripts/run.sh sail PATTERN.fold|MESH.msh [options]`.
 import argparse
 from pathlib import Path
 
-from membrane.commands import folder, plain_errors
+from membrane.commands import file, folder, plain_errors
 from membrane.parameters import from_arguments, parse
 from membrane.unfinished import new_results
 
@@ -23,7 +23,7 @@ def command_line():
     parser = argparse.ArgumentParser(
         prog="sail", description="Spin a sail made from a crease pattern or a mesh."
     )
-    parser.add_argument("file", type=Path, help="crease pattern (.fold) or mesh of gmsh (.msh)")
+    parser.add_argument("file", type=file, help="crease pattern (.fold) or mesh of gmsh (.msh)")
     parser.add_argument(
         "--out", type=folder, default=Path("out"), metavar="DIR", help="default: out"
     )

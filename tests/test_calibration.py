@@ -346,6 +346,18 @@ class TestKeptRuns(unittest.TestCase):
             self.path.write_text(text)
             self.assertEqual(self.found(), [], text)
 
+    def test_a_file_of_another_is_not_written_over(self):
+        kept_runs.refuse_another(self.path)
+        link = self.path.with_suffix(".link")
+        link.symlink_to(self.path)
+        other = self.path.with_suffix(".txt")
+        for path, text in ((link, None), *((other, text) for text in ("", "mine\n", "[1]\n"))):
+            if text is not None:
+                path.write_text(text)
+            with self.assertRaisesRegex(ValueError, f"{path} was not made by calibrate"):
+                kept_runs.refuse_another(path)
+        kept_runs.refuse_another(self.path.with_suffix(".missing"))
+
 
 class TestCommand(unittest.TestCase):
     def refused(self, said, *arguments):

@@ -40,7 +40,10 @@ def in_gmsh(work, *arguments):
 def _begin():
     """Send what gmsh prints to nowhere, and limit its memory; leave no core on the disk."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-    used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    used = (
+        int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[0])
+        * resource.getpagesize()
+    )
     for kind, most in ((resource.RLIMIT_AS, used + MEMORY), (resource.RLIMIT_CORE, 0)):
         soft, hard = resource.getrlimit(kind)
         limits = [limit for limit in (soft, hard, most) if limit != resource.RLIM_INFINITY]

@@ -304,7 +304,7 @@ def _sheet(points, blocks, names, version):
         creases=row[creases],
         crease_signs=signs,
         groups={name: _there(rows) for name, rows in nodes.items()},
-        others=tuple(name for name, dimension in groups if not _is_crease(name, dimension)),
+        others=tuple(name for name, dim in groups if dim < 2 and not _is_crease(name, dim)),
         notes=tuple(notes),
     )
 

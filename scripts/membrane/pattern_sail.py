@@ -18,7 +18,7 @@ from .fold_format import FoldFile, FoldFrame, fold_angles, read_fold, write_fold
 from .geometry import area_vectors, crease_angles, crossings, side_rows, triangle_areas
 from .mesh import tip_masses
 from .msh import read_msh
-from .parameters import RUN, SailParameters, check, parameter
+from .parameters import RUN, SailParameters, check, check_steps, parameter
 from .pattern_mesh import default_size, mesh_pattern
 from .patterns import crease_pattern, nearest_pose
 from .progress import warn
@@ -32,7 +32,6 @@ MOST_FINER = 100_000  # triangles of a mesh that is made finer than asked for, a
 REMESH = ": remesh, or set allowNegativeStiffness"  # what Membrane says of too flat a triangle
 STEP = 0.5  # of the critical one, by default
 TURN_STEP = 0.05  # rad: what the sail turns in a step, at most, by default
-MOST_STEPS = 1e12  # which would take years
 TURN = np.radians(20)  # by which the outline turns at a corner, at least
 UNITS = {
     "time": "s",
@@ -439,8 +438,7 @@ def _steps(p, critical):
     longest = min(p.dt or STEP * critical, p.duration)
     if not p.dt and p.omega > 0:
         longest = min(longest, TURN_STEP / p.omega)
-    if p.duration / longest > MOST_STEPS:
-        raise ValueError(f"duration = {p.duration} s: makes more than {MOST_STEPS:g} steps")
+    check_steps(p.duration, longest)
     rows = _parts(p.duration, max(p.history_interval, longest))
     interval = p.duration / rows
     return _Steps(interval / _parts(interval, longest), interval, p.shapes_interval, p.duration)

@@ -15,13 +15,15 @@ from yade import wrapper as yade_classes
 
 from . import __version__, measures, plots, report, scene
 from .case_folder import LAST_GOOD
+from .checkpoint import save_scene
 from .commands import Terminated
 from .files import write_json
 from .fold import fold, fold_report
 from .mesh import mesh_of, tip_masses
 from .output import NotFinite
+from .parameters import check_steps
 from .progress import Progress
-from .record import Recorder
+from .record import Recorder, is_whole
 from .spool import add_spool
 
 # The spin-up may take longer steps than the run: no accuracy is asked of it.
@@ -203,9 +205,11 @@ def march(p, recorder, note, look=look_away, begun=None, keep=None):
     keep : callable, optional
         Called after each row but the last with its number, which a later `begun` takes.
     """
-    stride = max(1, round(p.history_interval / p.dt))
+    check_steps(p.duration, p.dt)
+    stride = max(1, round(min(p.history_interval, p.duration) / p.dt))
     rows = max(1, round(p.duration / (stride * p.dt)))
-    between = round(p.shapes_interval / (stride * p.dt)) if p.shapes_interval > 0 else 0
+    shapes = min(p.shapes_interval, p.duration)
+    between = max(1, round(shapes / (stride * p.dt))) if shapes > 0 else 0
     progress = Progress("deploying", p.duration)
     if begun is None:
         scene.advance(1)  # a step's measures belong to the time at which it began
@@ -215,7 +219,7 @@ def march(p, recorder, note, look=look_away, begun=None, keep=None):
         scene.advance(stride, recorder.sail.forces if row - 1 == begun else None)
         now = row * stride * p.dt
         measured = recorder.history(now)
-        if row == rows or (between and row % max(1, between) == 0):
+        if row == rows or (between and row % between == 0):
             recorder.shape(now)
         progress.update(now, "  " + note(measured))
         look(recorder.sail)
@@ -270,7 +274,7 @@ def deploy(p, folder, pictures=True, checkpoints=None, page=True, look=look_away
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     watch = Stopwatch()
-    saved = checkpoints.load() if checkpoints else None
+    saved = checkpoints.load(lambda state: _is_whole(folder, state)) if checkpoints else None
     if saved:
         mesh, sail, facts = mesh_of(p), scene.loaded(), saved["facts"]
         watch = Stopwatch(saved["wall_time"])
@@ -310,7 +314,7 @@ def deploy(p, folder, pictures=True, checkpoints=None, page=True, look=look_away
                 lambda row: keep(RUN, {"row": row, "recorder": recorder.state()}),
             )
     except Diverged:
-        if pictures and recorder.rows:
+        if pictures and recorder.frames:
             draw(mesh, recorder, recorder.columns(), folder)
         raise
     finally:
@@ -349,6 +353,11 @@ def deploy(p, folder, pictures=True, checkpoints=None, page=True, look=look_away
     if page:
         write_page(folder)
     return {**summary, "wall_time": wall}
+
+
+def _is_whole(folder, saved):
+    """Whether what a checkpoint of `deploy` tells of is still in the folder."""
+    return saved["stage"] == SPIN_UP or is_whole(folder, saved["progress"]["recorder"])
 
 
 def begin(p):
@@ -428,7 +437,7 @@ def save_last_good(sail, folder):
     tags = yade_classes.Omega().tags
     for name in tags.keys():
         tags[name] = ""  # else two files of one state would differ by day and machine
-    yade_classes.Omega().save(str(path), quiet=True)
+    save_scene(path)
     return f"The last good state, of t = {time:.6g} s on YADE's clock, is in {path}"
 
 
@@ -446,7 +455,7 @@ def draw(mesh, recorder, history, folder):
     """
     plots.plot_deployment(history, folder / "deployment.png")
     times = np.array(recorder.frame_times)
-    rates = [measures.deployment_rate(mesh, x) for x in recorder.frames]
+    rates = np.interp(times, history["time"], history["deployment_rate"])  # of its rows
     picks = instants(times, int(np.argmax(rates)))
     frames = [recorder.frames[i] for i in picks]
     plots.plot_shapes(frames, mesh, folder / "shapes.png", times[picks])
