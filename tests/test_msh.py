@@ -75,7 +75,7 @@ class TestMsh(unittest.TestCase):
             old = gmsh_sheet(2.2).read_text().replace("\n2.2 0", f"\n{number} 0", 1)
             sheets.append(read_msh(written(old.replace("\n", "\r\n").encode())))
         for sheet in sheets:
-            self.assertEqual((sheet.others, sheet.notes), (("tips", "hub", "film"), ()))
+            self.assertEqual((sheet.others, sheet.notes), (("tips", "hub"), ()))
             self.assertAlmostEqual(sheet.area, 0.16, places=12)
             self.assertEqual(len(sheet.nodes), len(sheets[0].nodes))
             np.testing.assert_array_equal(sheet.nodes[sheet.creases][..., 0], 0)
