@@ -290,6 +290,12 @@ void MembraneForceEngine::findContacts() {
         throw std::runtime_error(getClassName() + ": the interactions of its membrane would pull once more; call "
                                                   "removeInteractions() of the membrane");
     contacts_.swap(found.contacts);
+    for (const NodeContact& contact : contacts_)
+        if (membrane->nodeOf(contact.other) >= 0)
+            throw std::runtime_error(getClassName() + ": bodies #" + std::to_string(membrane->bodyIds[contact.node]) +
+                                     " and #" + std::to_string(contact.other) +
+                                     ", nodes of one membrane, touch like grains; put "
+                                     "Ig2_MembraneNode_MembraneNode_MembraneGeom() into InteractionLoop");
     if (contacts_.empty() || forceTimeStep) return;
     constexpr Real grown = 1.1;
     const Real fastest = ContactStiffness(contacts_, bodies_, *scene).fastest;

@@ -7,7 +7,7 @@ import numpy as np
 from yade import wrapper as yade
 
 from . import _load, contacts, hub, spool
-from .progress import stages
+from .progress import stages, warn
 
 LARGE = 100_000  # nodes: adding so many takes about a second, so that progress is shown
 ADDING = {"rest state": 2, "bodies": 2, "interactions": 6}  # stages and their shares of the time
@@ -288,6 +288,12 @@ def set_engines(
         geometry = [_plugin["Ig2_MembraneNode_MembraneNode_MembraneGeom"]()]
         physics = [_plugin["Ip2_MembraneMat_MembraneMat_MembranePhys"](membrane=membrane)]
         laws = [_plugin["Law2_MembraneGeom_MembranePhys_Buckling"]()]
+    if not set(touching).issubset(membrane.bodyIds):
+        stranger = min(set(touching).difference(membrane.bodyIds))
+        raise ValueError(f"set_engines: touching: body #{stranger} is no node of the membrane")
+    untouched = [i for i in others if i not in driven and scene.bodies[i].bounded]
+    if untouched and not touching:
+        warn(f"nothing of the membrane touches body #{untouched[0]}: name nodes in `touching`")
     if touching:
         contacts.check(others, INTEGRATED)
         for body in (scene.bodies[i] for i in touching):
