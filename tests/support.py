@@ -26,6 +26,7 @@ from yade import wrapper as yade
 ROOT = Path(__file__).resolve().parents[1]
 # YADE was built with pkg/membrane in its source tree: the classes are its own.
 NATIVE = (Path(config.libDir) / "libpkg_membrane.so").exists()
+VIEW = hasattr(yade, "GlExtraDrawer")
 FULL = "MEMBRANE_FULL_TESTS"
 O = yade.Omega()  # noqa: E741, YADE's own name for it
 
@@ -38,6 +39,11 @@ def long(test):
 def of_the_plugin(test):
     """Mark a test, or a class of tests, of the extension module, which a YADE tree does without."""
     return unittest.skipIf(NATIVE, "the classes are native")(test)
+
+
+def of_the_view(test):
+    """Mark a test, or a class of tests, of YADE's 3D view, without which a YADE may be built."""
+    return unittest.skipUnless(VIEW, "YADE was built without its 3D view")(test)
 
 
 class SceneTest(unittest.TestCase):
