@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "CreaseKernel.hpp"
+#include "MathFlags.hpp" // like a CREATE_CPP_LOCAL_LOGGER it keeps this out of unity builds
+
 #include "BlockTransfer.hpp"
+#include "CreaseKernel.hpp"
 
 namespace membrane {
 namespace {
 
-struct Constants {
+struct CreaseColumns {
     const double *length, *heightC, *heightD, *sign, *steepestLever, *slopeC, *slopeD;
 };
 
@@ -18,7 +20,7 @@ struct Rest {
 };
 
 template <bool conservative>
-inline void compute(int padded, const Components (&x)[4], const Constants& c, const CreaseLaw& parameters,
+inline void compute(int padded, const Components (&x)[4], const CreaseColumns& c, const CreaseLaw& parameters,
                     BlockVectors (&force)[4]) {
     CreaseLaw law = parameters;
     law.conservative = conservative; // known to the compiler

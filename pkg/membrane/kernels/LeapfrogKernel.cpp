@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "LeapfrogKernel.hpp"
+#include "MathFlags.hpp" // like a CREATE_CPP_LOCAL_LOGGER it keeps this out of unity builds
+
 #include "../mechanics/Drag.hpp"
 #include "../mechanics/LocalDamping.hpp"
+#include "LeapfrogKernel.hpp"
 #include "Vectorised.hpp"
 
 namespace membrane {
@@ -80,14 +82,18 @@ inline double move(int begin, int end, const Motion& m, MotionSums& total) {
         const int last = std::min(end, first + blockSize);
         moveBlock<drag, local, wanted>(first, last, m, added);
         const double *const x = m.x.x, *const y = m.x.y, *const z = m.x.z;
+#ifdef _OPENMP // a YADE tree may be built without
 #pragma omp simd reduction(+ : lost)
+#endif
         for (int i = first; i < last; ++i) lost += 0. * (x[i] + y[i] + z[i]);
         if (wanted == Sums::none) continue;
         constexpr int count = wanted == Sums::energies ? Contributions::all : Contributions::ofWorks;
         double sum[count];
         for (int k = 0; k < count; ++k) {
             double part = 0.;
+#ifdef _OPENMP
 #pragma omp simd reduction(+ : part)
+#endif
             for (int e = 0; e < last - first; ++e) part += added.of[k][e];
             sum[k] = part;
         }

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "SideKernel.hpp"
+#include "MathFlags.hpp" // like a CREATE_CPP_LOCAL_LOGGER it keeps this out of unity builds
+
 #include "../mechanics/Damping.hpp"
 #include "../mechanics/SideForce.hpp"
 #include "BlockTransfer.hpp"
+#include "SideKernel.hpp"
 #include <cmath>
 
 namespace membrane {
 namespace {
 
-struct Constants {
+struct SideColumns {
     const double *stiffness, *restLength, *critical, *damping;
     double* length;
 };
@@ -24,7 +26,7 @@ enum class Wanted { springs, brakes, together, apart };
 
 template <Wanted wanted, Sums sums>
 inline void compute(int padded, const Components& xa, const Components& xb, const Components& ua, const Components& ub,
-                    const Constants& c, Results& out) {
+                    const SideColumns& c, Results& out) {
     constexpr bool springs = wanted != Wanted::brakes, brakes = wanted != Wanted::springs;
 #pragma GCC ivdep
     for (int e = 0; e < padded; ++e) {
@@ -68,9 +70,9 @@ template <Wanted wanted, Sums sums> inline SideEnergy addBlocks(SideTable& table
     for (int i = table.order.groups[group]; i < table.order.groups[group + 1]; ++i) {
         const Block block = table.order.blocks[i];
         const int first = table.constants[i];
-        const Constants constants{table.stiffness.data() + first, table.restLength.data() + first,
-                                  table.critical.data() + first, table.damping.data() + first,
-                                  sums != Sums::none ? table.length.data() + block.begin : nullptr};
+        const SideColumns constants{table.stiffness.data() + first, table.restLength.data() + first,
+                                    table.critical.data() + first, table.damping.data() + first,
+                                    sums != Sums::none ? table.length.data() + block.begin : nullptr};
         const int* const a = table.order.node[0].data() + block.begin;
         const int* const b = table.order.node[1].data() + block.begin;
         compute<wanted, sums>(block.paddedCount(), cornerOf(block, a, job.x, gathered[0]),
