@@ -35,6 +35,7 @@ trap 'exit 143' TERM
 make_root() {
     local part=$root.part log=$folder/$suite.log
     command -v debootstrap >/dev/null || impossible "debootstrap is not installed"
+    (($(df --output=avail -B1G "$folder" | tail -n 1) >= 6)) || impossible "$folder has less than 6 GB left"
     say "making Debian $suite in $root, once: some minutes, with all that is built in it 4 GB"
     rm -rf --one-file-system "$part"
     debootstrap --variant=minbase "$suite" "$part" >"$log" 2>&1 || impossible "debootstrap failed, see $log"
@@ -80,11 +81,20 @@ mount -t proc proc "$root/proc"
 mount --rbind /sys "$root/sys"
 mount --rbind /dev "$root/dev" # with /dev/pts and /dev/shm
 mkdir -p "$root/root"
-environment=(PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 TERM="${TERM-dumb}")
-for name in http_proxy https_proxy no_proxy MEMBRANE_FULL_TESTS; do
+environment=(MEMBRANE_DISPOSABLE=1 PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 TERM="${TERM-dumb}")
+for name in http_proxy https_proxy no_proxy; do
     [[ -z ${!name-} ]] || environment+=("$name=${!name}")
 done
 status=0
 chroot "$root" env -i "${environment[@]}" /sails/scripts/run.sh "$@" || status=$?
 chroot "$root" apt-get clean || true
+case $1 in # what it made for here
+probe) given=pkg/membrane/yade-abi/facts ;;
+package) given=build/package ;;
+*) given= ;;
+esac
+if [[ -n $given && -d $sources/$given ]]; then
+    mkdir -p "$source/$given"
+    cp -ru "$sources/$given/." "$source/$given"
+fi
 exit "$status"

@@ -46,6 +46,7 @@ In the folder of the sources also:
   viewer                    bundle the viewer of report.html, which npm's registry holds parts of
   sanitize                  the C++ tests under address and undefined-behaviour sanitizers, and the
                             threads under a race check
+  packages                  install what is needed to build and to run, and no more
   build                     compile the plugin into build/python
   package                   make build/package/yade-membrane_….deb, for the YADE that is here
   probe [--write]           tell how this YADE's classes differ from the nearest known release
@@ -310,7 +311,7 @@ python_sources() { find "$root/scripts" "$root/tests" "$root/reference" -name '*
 
 format() {
     need "${format_packages[@]}"
-    local -a cpp python shell=("$root/scripts/run.sh" "$root/scripts/workflow/slurm/status.sh" "$root/.ci/run")
+    local -a cpp python shell=("$root"/scripts/*.sh "$root"/scripts/packaging/* "$root/scripts/workflow/slurm/status.sh" "$root/.ci/run")
     local -a black=(black -q -l 100)
     mapfile -t cpp < <(cpp_sources)
     mapfile -t python < <(python_sources)
@@ -480,6 +481,10 @@ calibrate)
 sanitize)
     take_nothing "$@"
     sanitize
+    ;;
+packages)
+    take_nothing "$@"
+    need "${run_packages[@]}" "${build_packages[@]}"
     ;;
 build)
     take_nothing "$@"

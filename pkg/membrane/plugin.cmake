@@ -103,15 +103,4 @@ if(stale_copies)
     file(REMOVE ${stale_copies})
 endif()
 
-# ---------------------------------------------------------------------------------------------------------------------
-# Installation: where every `yade` run finds the package, if the prefix is /usr/local (the default) or /usr.
-
-set(package_dir lib/python${python_version}/dist-packages/membrane)
-install(TARGETS _membrane LIBRARY DESTINATION ${package_dir})
-install(FILES ${releases} DESTINATION ${package_dir})
-install(DIRECTORY scripts/membrane/ DESTINATION ${package_dir} FILES_MATCHING PATTERN *.py
-        PATTERN __pycache__ EXCLUDE PATTERN viewer EXCLUDE)
-# The viewer of report.html, if `scripts/run.sh viewer` has made it.
-install(FILES ${python_dir}/membrane/viewer.html DESTINATION ${package_dir} OPTIONAL)
-install(DIRECTORY scripts/ DESTINATION share/membrane FILES_MATCHING PATTERN *.py PATTERN *.fold
-        PATTERN membrane EXCLUDE PATTERN __pycache__ EXCLUDE)
+include(pkg/membrane/package.cmake)
