@@ -29,7 +29,7 @@ def declared():
 
 
 def size(name):
-    """What YADE asks operator new for when it makes an object [bytes], as text; - if it makes none."""
+    """What YADE asks operator new for to make an object [bytes], as text; - if it makes none."""
     allocated = ctypes.CDLL(None).membrane_allocated
     allocated.argtypes, allocated.restype = [ctypes.c_void_p], ctypes.c_size_t
     try:
@@ -135,7 +135,7 @@ def differences(known, found, tables):
     for name in sorted({*known, *found}):
         before, now = known.get(name), found.get(name)
         if before is None or now is None:
-            yield f"{name}: {'new in the headers' if before is None else 'no longer in the headers'}"
+            yield f"{name}: {'new' if before is None else 'no longer'} in the headers"
             continue
         if before[0] != now[0]:
             yield f"{name}: size {now[0]}, not {before[0]}"
@@ -179,9 +179,8 @@ def main():
     print("\n".join(lines) if lines else "nothing differs")
     if nearest() != here:
         print(f"as a line of {ABI.name}/releases.txt, with its LLVM for the ?: {row()}")
-    print(
-        f"probe: YADE {here} beside {arguments.beside}: {len(found)} classes, {len(lines)} differences"
-    )
+    counts = f"{len(found)} classes, {len(lines)} differences"
+    print(f"probe: YADE {here} beside {arguments.beside}: {counts}")
     return 0
 
 

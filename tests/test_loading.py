@@ -54,7 +54,7 @@ def wrong(value):
 
 
 def package(name, module=None):
-    """A copy of the package in a folder of its own, as PYTHONPATH; with another `module`, if any."""
+    """A copy of the package in a folder of its own, as PYTHONPATH; with another `module`."""
     folder = scratch() / name
     here = Path(membrane.__file__).parent
     kept = shutil.ignore_patterns("_membrane*", "__pycache__", "viewer*")
@@ -144,6 +144,42 @@ class TestLayout(unittest.TestCase):
         _layout.check(self.native, wrapper)
         after = omega.dt, omega.trackEnergy, len(omega.bodies), len(omega.materials)
         self.assertEqual(after, before)
+
+
+class TestBuildFolder(unittest.TestCase):
+    def test_objects_of_another_release_do_not_stay(self):
+        """As after an upgrade of the system; all that is built here is an empty project."""
+        sources, run = scratch(), ROOT / "scripts" / "run.sh"
+        for path in (run, ROOT / "pkg" / "membrane" / "yade-abi" / "releases.txt"):
+            copy = sources / path.relative_to(ROOT)
+            copy.parent.mkdir(parents=True)
+            shutil.copy(path, copy)
+        project = "cmake_minimum_required(VERSION 3.25)\nproject(empty NONE)\n"
+        (sources / "CMakeLists.txt").write_text(project, encoding="utf-8")
+        build = sources / "build"
+        old, made_for = build / "CMakeFiles" / "old.o", build / ".made-for"
+        command = [sources / "scripts" / "run.sh", "build"]
+        subprocess.run(command, check=True)
+        old.touch()
+        subprocess.run(command, check=True)
+        self.assertTrue(old.exists())
+        said = made_for.read_text(encoding="utf-8")
+        here = yade.config.version.strip()
+        self.assertIn(f"YADE {here}\n", said)
+        made_for.write_text(said.replace(here, "2001.1"), encoding="utf-8")
+        subprocess.run(command, check=True)
+        self.assertFalse(old.exists())
+
+    def test_cmake_by_hand_refuses_a_folder_of_another_release(self):
+        done = subprocess.run(
+            ["cmake", "-S", ROOT, "-B", scratch() / "build", "-DMEMBRANE_YADE=2001.1"],
+            capture_output=True,
+            text=True,
+        )
+        self.assertNotEqual(done.returncode, 0)
+        here = yade.config.version.strip()
+        said = " ".join(done.stderr.split())
+        self.assertIn(f"is for YADE 2001.1, but here is YADE {here}: begin anew by `cmake", said)
 
 
 class TestVersion(unittest.TestCase):

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Preloaded by `scripts/run.sh probe`: remembers what YADE asks operator new for, so that sizes of its classes are known.
+// Preloaded by `scripts/run.sh probe`: remembers what YADE asks operator new for, which tells the sizes of its classes.
 #include <cstddef>
 #include <cstdlib>
 #include <new>
