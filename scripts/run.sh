@@ -79,15 +79,8 @@ no_display=(-n) # how YADE is told to do without
 
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.." && pwd -P)
 build=$root/build
-python=$build/python
-me=scripts/run.sh
-# Installed by `package` there is nothing to build.
-installed=
-if [[ ! -e $root/CMakeLists.txt ]]; then
-    installed=yes me=yade-membrane
-    python=$(compgen -G "$root/../../lib/python3*/dist-packages/membrane" | head -n 1)
-    python=${python%/membrane}
-fi
+me=scripts/run.sh installed=
+[[ -e $root/CMakeLists.txt ]] || me=yade-membrane installed=yes # by `package`: there is nothing to build
 releases=$root/pkg/membrane/yade-abi/releases.txt
 PATH=/usr/bin:/bin:$PATH # Debian's tools before any other of the same name
 
@@ -240,6 +233,8 @@ set_environment() {
         export HOME=$build/home
         if ! { mkdir -p "$HOME" && [[ -w $HOME ]]; } 2>/dev/null; then new_home; fi
     fi
+    local python=$build/python
+    [[ -z $installed ]] || python=$(dirname "$(compgen -G "$root/../../lib/python3*/dist-packages/membrane")")
     export PYTHONPATH=$python${PYTHONPATH:+:$PYTHONPATH} PYTHONUNBUFFERED=1 MPLBACKEND=Agg
 }
 

@@ -13,8 +13,9 @@ install(FILES ${python_dir}/membrane/viewer.html DESTINATION ${package_dir} OPTI
 # The commands, as `yade-membrane deploy`.
 set(share_dir share/yade-membrane)
 install(DIRECTORY scripts/ DESTINATION ${share_dir}/scripts FILES_MATCHING PATTERN *.py PATTERN *.fold PATTERN *.yaml
-        PATTERN Snakefile PATTERN membrane EXCLUDE PATTERN __pycache__ EXCLUDE PATTERN benchmarks EXCLUDE
-        PATTERN stability_maps EXCLUDE PATTERN verification EXCLUDE PATTERN probing EXCLUDE)
+        PATTERN Snakefile PATTERN membrane EXCLUDE PATTERN __pycache__ EXCLUDE
+        REGEX "/(bench|chart|parts|probe|stability|verify)\\.py$" EXCLUDE
+        REGEX "/(benchmarks|packaging|probing|stability_maps|verification)$" EXCLUDE)
 install(PROGRAMS scripts/run.sh DESTINATION ${share_dir}/scripts)
 install(PROGRAMS scripts/workflow/slurm/status.sh DESTINATION ${share_dir}/scripts/workflow/slurm)
 file(CREATE_LINK ../${share_dir}/scripts/run.sh ${PROJECT_BINARY_DIR}/yade-membrane SYMBOLIC)
@@ -31,8 +32,8 @@ set(CPACK_PACKAGE_NAME yade-membrane)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION}+yade${MEMBRANE_YADE})
 set(CPACK_PACKAGE_CONTACT "The authors of yade-membrane <root@localhost>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "Folded membranes that spin and deploy, for YADE ${MEMBRANE_YADE}")
-set(CPACK_PACKAGE_DESCRIPTION "A plugin for YADE: solar sails and other folded membranes unfold by spinning.
-\"import membrane\" in a script of YADE's, or the command yade-membrane.")
+set(CPACK_PACKAGE_DESCRIPTION "Solar sails and other folded membranes unfold by spinning: import membrane in a script
+of YADE's, or the command yade-membrane.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
