@@ -77,6 +77,7 @@ copy_sources() {
 [[ -d $root ]] || make_root
 copy_sources
 cp -L /etc/resolv.conf /etc/hosts "$root/etc/" || true
+mount --bind "$root" "$root" # in which tests mount file systems of their own
 mount -t proc proc "$root/proc"
 mount --rbind /sys "$root/sys"
 mount --rbind /dev "$root/dev" # with /dev/pts and /dev/shm
