@@ -74,28 +74,31 @@ copy_sources() {
     fi
 }
 
-[[ -d $root ]] || make_root
-copy_sources
-cp -L /etc/resolv.conf /etc/hosts "$root/etc/" || true
-mount --bind "$root" "$root" # in which tests mount file systems of their own
-mount -t proc proc "$root/proc"
-mount --rbind /sys "$root/sys"
-mount --rbind /dev "$root/dev" # with /dev/pts and /dev/shm
-mkdir -p "$root/root"
-environment=(MEMBRANE_DISPOSABLE=1 PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 TERM="${TERM-dumb}")
-for name in http_proxy https_proxy no_proxy; do
-    [[ -z ${!name-} ]] || environment+=("$name=${!name}")
-done
-status=0
-chroot "$root" env -i "${environment[@]}" /sails/scripts/run.sh "$@" || status=$?
-chroot "$root" apt-get clean || true
-case $1 in # what it made for here
-probe) given=pkg/membrane/yade-abi/facts ;;
-package) given=build/package ;;
-*) given= ;;
-esac
-if [[ -n $given && -d $sources/$given ]]; then
-    mkdir -p "$source/$given"
-    cp -ru "$sources/$given/." "$source/$given"
-fi
-exit "$status"
+# In braces, to be read as a whole: these sources may change during a long run.
+{
+    [[ -d $root ]] || make_root
+    copy_sources
+    cp -L /etc/resolv.conf /etc/hosts "$root/etc/" || true
+    mount --bind "$root" "$root" # in which tests mount file systems of their own
+    mount -t proc proc "$root/proc"
+    mount --rbind /sys "$root/sys"
+    mount --rbind /dev "$root/dev" # with /dev/pts and /dev/shm
+    mkdir -p "$root/root"
+    environment=(MEMBRANE_DISPOSABLE=1 PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 TERM="${TERM-dumb}")
+    for name in http_proxy https_proxy no_proxy; do
+        [[ -z ${!name-} ]] || environment+=("$name=${!name}")
+    done
+    status=0
+    chroot "$root" env -i "${environment[@]}" /sails/scripts/run.sh "$@" || status=$?
+    chroot "$root" apt-get clean || true
+    case $1 in # what it made for here
+    probe) given=pkg/membrane/yade-abi/facts ;;
+    package) given=build/package ;;
+    *) given= ;;
+    esac
+    if [[ -n $given && -d $sources/$given ]]; then
+        mkdir -p "$source/$given"
+        cp -ru "$sources/$given/." "$source/$given"
+    fi
+    exit "$status"
+}

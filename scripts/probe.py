@@ -53,7 +53,8 @@ def attributes(name):
 
 def said_by(*command):
     """Lines that a tool of binutils prints."""
-    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
+    done = subprocess.run(command, capture_output=True, encoding="utf-8", check=True)
+    return done.stdout.splitlines()
 
 
 def libraries():
