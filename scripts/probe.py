@@ -167,7 +167,7 @@ def main():
     parser = argparse.ArgumentParser(prog="probe", description=__doc__.partition("\n")[0])
     parser.add_argument("--write", action="store_true", help="keep the facts of this YADE")
     parser.add_argument(
-        "--beside", metavar="RELEASE", default=nearest(), help="default: %(default)s"
+        "--beside", nargs="+", metavar="RELEASE", default=[nearest()], help="default: %(default)s"
     )
     arguments = parser.parse_args()
     here = yade.config.version.strip()
@@ -175,13 +175,13 @@ def main():
     if arguments.write:
         write(ABI / "facts" / f"{here}.txt", found)
         return 0
-    known = read(ABI / "facts" / f"{arguments.beside}.txt")
-    lines = list(differences(known, found, tables))
-    print("\n".join(lines) if lines else "nothing differs")
+    for release in arguments.beside:
+        lines = list(differences(read(ABI / "facts" / f"{release}.txt"), found, tables))
+        print("\n".join(lines) if lines else "nothing differs")
+        counts = f"{len(found)} classes, {len(lines)} differences"
+        print(f"probe: YADE {here} beside {release}: {counts}")
     if nearest() != here:
         print(f"as a line of {ABI.name}/releases.txt, with its LLVM for the ?: {row()}")
-    counts = f"{len(found)} classes, {len(lines)} differences"
-    print(f"probe: YADE {here} beside {arguments.beside}: {counts}")
     return 0
 
 

@@ -10,52 +10,47 @@ import yade.config
 from support import ROOT, run_yade, scratch
 
 FACTS = ROOT / "pkg" / "membrane" / "yade-abi" / "facts"
-SCRIPTS = ROOT / "scripts"
+HERE = yade.config.version.strip()
+FIRST = "2023.02a"
+OTHER = "2025.2.0" if HERE == FIRST else FIRST
 
 
 @lru_cache(maxsize=None)
-def allocations():
-    """The library that remembers allocations."""
+def said():
+    """What it says of this YADE beside itself, another, and itself without one virtual function."""
     library = scratch() / "allocations.so"
-    source = SCRIPTS / "probing" / "allocations.cpp"
+    source = ROOT / "scripts" / "probing" / "allocations.cpp"
     subprocess.run(["g++", "-std=c++17", "-shared", "-fPIC", source, "-o", library], check=True)
-    return str(library)
+    kept = (FACTS / f"{HERE}.txt").read_text(encoding="utf-8")
+    before = re.sub(r"(?m)^Bound  144  28  \w+", "Bound  144  27  01234567", kept)
+    (scratch() / "before.txt").write_text(before, encoding="utf-8")
+    beside = ["--beside", HERE, OTHER, scratch() / "before"]
+    done = run_yade(ROOT / "scripts" / "probe.py", *beside, LD_PRELOAD=str(library))
+    if done.returncode:
+        raise AssertionError(done.stderr)
+    parts = re.split(r"(?m)^probe: YADE (.*)\n", done.stdout)
+    return parts[:6:2], parts[1:6:2]
 
 
 class TestProbe(unittest.TestCase):
-    def probe(self, *options):
-        """What it prints, after YADE's own lines."""
-        done = run_yade(SCRIPTS / "probe.py", *options, LD_PRELOAD=allocations())
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return done.stdout
-
     def test_nothing_differs_from_what_is_kept_of_this_release(self):
-        said = self.probe()
-        here = yade.config.version.strip()
-        self.assertRegex(said, rf"nothing differs\nprobe: YADE {here} beside {here}: \d\d classes")
+        (lines, *_), (counts, *_) = said()
+        self.assertTrue(lines.endswith("\nnothing differs\n"), lines)
+        self.assertRegex(counts, rf"^{HERE} beside {HERE}: \d\d classes, 0 differences$")
 
     def test_what_the_releases_have_otherwise_is_told(self):
-        here = yade.config.version.strip()
-        first = "2023.02a"
-        other = "2025.2.0" if here == first else first
-        said = self.probe("--beside", other)
-        sizes = (432, 440) if here == first else (440, 432)
-        self.assertIn("NewtonIntegrator: size {}, not {}\n".format(*sizes), said)
-        sign = "-" if here == first else "+"
+        lines = said()[0][1]
+        sizes = (432, 440) if HERE == FIRST else (440, 432)
+        self.assertIn("NewtonIntegrator: size {}, not {}\n".format(*sizes), lines)
+        sign = "-" if HERE == FIRST else "+"
         for attribute in ("niterOmelyan1998", "normalizeEvery", "rotAlgorithm"):
-            self.assertIn(f" {sign}{attribute}:", said)
-        told = set(re.findall("^([A-Z][A-Za-z]+): ", said, re.MULTILINE))
-        since = {"FrictPhys", "Shape", "Sphere"} if here > "2026" else set()
-        self.assertEqual(told, {"NewtonIntegrator", *since}, said)
+            self.assertIn(f" {sign}{attribute}:", lines)
+        told = set(re.findall("^([A-Z][A-Za-z]+): ", lines, re.MULTILINE))
+        since = {"FrictPhys", "Shape", "Sphere"} if HERE > "2026" else set()
+        self.assertEqual(told, {"NewtonIntegrator", *since}, lines)
 
     def test_a_virtual_function_more_is_told(self):
-        here = yade.config.version.strip()
-        kept = (FACTS / f"{here}.txt").read_text(encoding="utf-8")
-        before = re.sub(r"(?m)^Bound  144  28  \w+", "Bound  144  27  01234567", kept)
-        (scratch() / "before.txt").write_text(before, encoding="utf-8")
-        said = self.probe("--beside", scratch() / "before")
-        told = (
-            r"\nBound: 28 words of virtual table, not 27, or others: .*, getClassIndex, .*\nprobe: "
-        )
-        self.assertRegex(said, told)
-        self.assertIn("38 classes, 1 differences", said)
+        lines, counts = said()[0][2], said()[1][2]
+        start = "Bound: 28 words of virtual table, not 27, or others: "
+        self.assertRegex(lines, rf"^{start}.*, getClassIndex, .*\n$")
+        self.assertIn("38 classes, 1 differences", counts)
