@@ -21,7 +21,7 @@ impossible() {
 # All mounts are made in a name space of its own, and go with the last process in it, however that ends.
 if [[ ${2-} != --inside ]]; then
     [[ $(id -u) == 0 ]] || impossible "only root can make it"
-    mkdir -p "$folder" || impossible "$folder cannot be made"
+    mkdir -p "$folder" 2>/dev/null || impossible "$folder cannot be made"
     exec 8>"$folder/.$suite.lock"
     flock -n 8 || { say "waiting for another run in $root" && flock 8; }
     unshare --mount --pid --fork --kill-child true 2>/dev/null || impossible "name spaces for its mounts cannot be made"
@@ -88,6 +88,8 @@ copy_sources() {
     for name in http_proxy https_proxy no_proxy; do
         [[ -z ${!name-} ]] || environment+=("$name=${!name}")
     done
+    # An earlier run may have been stopped while it installed something.
+    chroot "$root" env -i "${environment[@]}" DEBIAN_FRONTEND=noninteractive dpkg --configure -a >/dev/null 2>&1 || true
     status=0
     chroot "$root" env -i "${environment[@]}" /sails/scripts/run.sh "$@" || status=$?
     chroot "$root" apt-get clean || true
