@@ -5,6 +5,7 @@ import json
 import os
 import shutil
 import subprocess
+import tempfile
 import unittest
 from functools import lru_cache
 from pathlib import Path
@@ -49,7 +50,8 @@ class TestPackage(unittest.TestCase):
         self.assertTrue(field("Version").endswith(f"+yade{here}"), field("Version"))
 
     def test_its_command_works_without_the_sources(self):
-        root, folder = scratch(), scratch()
+        root, folder = scratch() / "package", scratch() / "anywhere"
+        folder.mkdir()
         said_by("dpkg-deb", "--extract", package(), root)
         names = [path.name for path in root.rglob("*")]
         for name in ("guide.md", "example.py", "Snakefile", "status.sh", "miura.fold", "copyright"):
@@ -78,7 +80,8 @@ class TestInstalled(unittest.TestCase):
         apt = ["apt-get", "-qy", "--no-install-recommends"]
         said_by(*apt, "install", package())
         self.addCleanup(subprocess.run, [*apt, "purge", "yade-membrane"], capture_output=True)
-        folder = scratch()
+        folder = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, folder)
         folder.chmod(0o777)
         nobody = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", "env", "-i"]
         nobody += ["PATH=/usr/bin:/bin", "LC_ALL=C.UTF-8", f"HOME={folder}"]
