@@ -74,12 +74,19 @@ copy_sources() {
     fi
 }
 
+# inside [NAME=VALUE...] COMMAND...: runs it there; by pivot_root, as within a chroot no test could make a name space.
+inside() {
+    # shellcheck disable=SC2016
+    unshare --mount sh -c 'cd "$0" && pivot_root . mnt && umount -l /mnt && exec env -i "$@"' \
+        "$root" "${environment[@]}" "$@"
+}
+
 # In braces, to be read as a whole: these sources may change during a long run.
 {
     [[ -d $root ]] || make_root
     copy_sources
     cp -L /etc/resolv.conf /etc/hosts "$root/etc/" || true
-    mount --bind "$root" "$root" # in which tests mount file systems of their own
+    mount --bind "$root" "$root" # pivot_root takes mounts only
     mount -t proc proc "$root/proc"
     mount --rbind /sys "$root/sys"
     mount --rbind /dev "$root/dev" # with /dev/pts and /dev/shm
@@ -89,10 +96,10 @@ copy_sources() {
         [[ -z ${!name-} ]] || environment+=("$name=${!name}")
     done
     # An earlier run may have been stopped while it installed something.
-    chroot "$root" env -i "${environment[@]}" DEBIAN_FRONTEND=noninteractive dpkg --configure -a >/dev/null 2>&1 || true
+    inside DEBIAN_FRONTEND=noninteractive dpkg --configure -a >/dev/null 2>&1 || true
     status=0
-    chroot "$root" env -i "${environment[@]}" /sails/scripts/run.sh "$@" || status=$?
-    chroot "$root" apt-get clean || true
+    inside /sails/scripts/run.sh "$@" || status=$?
+    inside apt-get clean || true
     case $1 in # what it made for here
     probe) given=pkg/membrane/yade-abi/facts ;;
     package) given=build/package ;;
