@@ -26,7 +26,7 @@ void findEnergy(EnergyTracker& energies, const string& name, int& index) {
     if (__atomic_load_n(&index, __ATOMIC_ACQUIRE) >= 0) return;
     const std::lock_guard<std::mutex> lock(counting);
     int found = index;
-    if (found < 0) energies.findId(name, found, /*reset in every step*/ true);
+    if (found < 0) energies.add(0., name, found, /*reset in every step*/ true); // findId itself is not in every YADE
     __atomic_store_n(&index, found, __ATOMIC_RELEASE);
 }
 
