@@ -16,7 +16,6 @@ import sys
 import time
 from pathlib import Path
 
-import sweeping  # noqa: F401  (makes parts of membrane importable without YADE)
 from membrane.commands import file, folder, plain_errors
 from membrane.files import write_json
 from membrane.own import CALIBRATION

@@ -11,7 +11,6 @@ import os
 import sys
 from pathlib import Path
 
-import sweeping  # noqa: F401  (makes parts of membrane importable without YADE)
 from membrane.commands import count, folder, plain_errors
 
 with plain_errors("sweep"):

@@ -12,7 +12,6 @@ import re
 import sys
 from pathlib import Path
 
-import sweeping  # noqa: F401  (makes parts of membrane importable without YADE)
 from membrane.commands import plain_errors
 
 with plain_errors("workflow"):
