@@ -3,8 +3,8 @@
 
 import numpy as np
 from membrane import plots, scene, spool
-from membrane.fold import fold
 from membrane.mesh import sail_mesh
+from membrane.mesh.fold import fold
 from yade.wrapper import Omega
 
 omega = 30.0  # rad/s

@@ -13,9 +13,9 @@ from membrane.unfinished import new_results
 
 with plain_errors("sail"):
     from membrane import pattern_sail
+    from membrane.mesh.sheet_words import described
     from membrane.pattern_sail import PatternParameters
     from membrane.report import PAGE
-    from membrane.sheet_words import described
 
 
 def command_line():

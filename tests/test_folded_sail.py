@@ -6,7 +6,7 @@ from dataclasses import asdict
 
 import numpy as np
 from membrane import geometry, sail
-from membrane.fold import fold_report
+from membrane.mesh.fold import fold_report
 from membrane.parameters import SailParameters
 from support import O, fold_angle
 

@@ -17,14 +17,14 @@ import unittest
 from functools import lru_cache
 
 import numpy as np
-from membrane import msh
 from membrane.files import BadFile
-from membrane.fold_format import LETTERS, FoldFile, FoldFrame, read_fold, write_fold
 from membrane.geometry import crease_corners
-from membrane.miura import miura
+from membrane.mesh import msh
+from membrane.mesh.fold_format import LETTERS, FoldFile, FoldFrame, read_fold, write_fold
+from membrane.mesh.miura import miura
+from membrane.mesh.patterns import crease_pattern
 from membrane.output import HistoryWriter, read_history
 from membrane.parameters import SailParameters, check, read_parameters
-from membrane.patterns import crease_pattern
 from support import FULL, ROOT, gmsh_sheet, scratch
 
 sys.path.append(str(ROOT / "scripts"))

@@ -7,9 +7,9 @@ from functools import lru_cache
 
 import numpy as np
 from membrane import Membrane, geometry, pattern_sail, scene
-from membrane.fold_format import FoldFile, FoldFrame, read_fold, write_fold
+from membrane.mesh.fold_format import FoldFile, FoldFrame, read_fold, write_fold
+from membrane.mesh.pattern_mesh import default_size
 from membrane.output import read_history
-from membrane.pattern_mesh import default_size
 from membrane.pattern_sail import PatternParameters, outline_corners
 from support import O, ROOT, CommandTest, SceneTest, gmsh_sheet, quiet, run_yade, scratch
 

@@ -10,7 +10,7 @@ The building blocks of scenes are modules of this package: `mesh`, `fold`, `spoo
 
 import sys
 
-from . import _load
+from . import _former, _load  # noqa: F401
 
 __version__ = _load.VERSION
 __all__ = sorted((*_load.CLASSES, *_load.ALIASES))

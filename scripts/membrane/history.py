@@ -3,11 +3,10 @@
 
 import csv
 import io
-import math
 
 import numpy as np
 
-from .files import BadFile, read_text, shown
+from .files import BadFile, is_value, read_text, shown
 
 
 def read_history(path):
@@ -80,11 +79,3 @@ def _numbers(text, columns):
     except ValueError:
         return None
     return table.T.copy() if np.isfinite(table).all() else None
-
-
-def is_value(text):
-    """Whether a text is a finite number, written as others than Python write it, too."""
-    try:
-        return "_" not in text and math.isfinite(float(text))
-    except ValueError:
-        return False

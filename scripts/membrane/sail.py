@@ -18,8 +18,8 @@ from .case_folder import LAST_GOOD
 from .checkpoint import save_scene
 from .commands import Terminated
 from .files import write_json
-from .fold import fold, fold_report
 from .mesh import mesh_of, tip_masses
+from .mesh.fold import fold, fold_report
 from .output import NotFinite
 from .parameters import check_steps
 from .progress import Progress

@@ -11,8 +11,8 @@ energy doubles within 600 steps.
 
 import numpy as np
 from membrane import scene
-from membrane.fold import fold
 from membrane.mesh import sail_mesh, tip_masses
+from membrane.mesh.fold import fold
 
 from .common import Model, O, bisect, figure, folder, grows, save, write_table
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import membrane
 import numpy as np
 from membrane import scene
-from membrane.fold import fold
 from membrane.mesh import sail_mesh
+from membrane.mesh.fold import fold
 from yade import wrapper as yade
 
 from reference import forces as paper

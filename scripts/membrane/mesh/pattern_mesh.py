@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from .geometry import MOUNTAIN, VALLEY, area_vectors, crease_angles, side_rows, triangle_areas
-from .geometry import triangle_angles, unique_sides
+from ..geometry import MOUNTAIN, VALLEY, area_vectors, crease_angles, side_rows, triangle_angles
+from ..geometry import triangle_areas, unique_sides
 from .gmsh_process import GmshError, in_gmsh
 from .patterns import face_pairs
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .geometry import nearness, twins
+from ..geometry import nearness, twins
 from .orientation import faces_to_turn, laid_down, plane_normal
 
 

@@ -16,9 +16,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .files import BadFile, read_bytes, shown
-from .geometry import MOUNTAIN, VALLEY, area_vectors, cut_quadrangles, nearness
-from .geometry import pieces, twins, unique_sides
+from ..files import BadFile, read_bytes, shown
+from ..geometry import MOUNTAIN, VALLEY, area_vectors, cut_quadrangles, nearness, pieces, twins
+from ..geometry import unique_sides
 from .gmsh_process import GmshError, in_gmsh
 from .orientation import faces_to_turn, laid_down, plane_normal
 from .pattern_mesh import SheetMesh

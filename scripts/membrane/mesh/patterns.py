@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .geometry import nearness
+from ..geometry import nearness
 from .orientation import plane_normal
 from .pattern_ways import area_vector, one_way_round, plain, seen_from_above, without_repeats
 from .pattern_ways import without_twins

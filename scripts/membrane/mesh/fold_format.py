@@ -17,9 +17,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .files import BadFile, read_object, replace_text, shown
-from .geometry import MOUNTAIN, VALLEY
-from .history import is_value
+from ..files import BadFile, is_value, read_object, replace_text, shown
+from ..geometry import MOUNTAIN, VALLEY
 
 SPEC = 1.2
 LETTERS = "BMVFUCJ"

@@ -13,7 +13,7 @@ from numbers import Integral
 
 import numpy as np
 
-from .geometry import MOUNTAIN, VALLEY, side_rows, unique_sides
+from ..geometry import MOUNTAIN, VALLEY, side_rows, unique_sides
 
 LINE_KINDS = {"film": 0, "crease": 1, "seam": 2, "tether": 3}
 

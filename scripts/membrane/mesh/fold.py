@@ -17,8 +17,8 @@ from math import atan2, cos, hypot, pi, sin, sqrt, tan
 
 import numpy as np
 
-from .geometry import crease_angles, side_lengths
-from .mesh import quarter_turn
+from ..geometry import crease_angles, side_lengths
+from .square_sail import quarter_turn
 
 SHORTENED = 1e-3
 

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from .geometry import MOUNTAIN
+from ..geometry import MOUNTAIN
 
 LARGEST, SMALLEST = 100.0, 1e-3  # m; beyond them a unit has probably been forgotten
 FEW = 10  # sides, or pairs of nodes, that may be said to set the time step
