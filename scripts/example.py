@@ -2,9 +2,10 @@
 """A sail of one's own: smaller, thicker, with three fold lines, on a spool that turns faster."""
 
 import numpy as np
-from membrane import plots, scene, spool
+from membrane import plots, scene
 from membrane.mesh import sail_mesh
 from membrane.mesh.fold import fold
+from membrane.scene import spool
 from yade.wrapper import Omega
 
 omega = 30.0  # rad/s

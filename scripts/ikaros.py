@@ -30,9 +30,10 @@ from membrane.unfinished import new_results
 
 with plain_errors("ikaros"):
     from matplotlib.figure import Figure
-    from membrane import hub, plots, sail
+    from membrane import plots, sail
     from membrane.record import Recorder
     from membrane.report import PAGE
+    from membrane.scene import hub
     from yade.wrapper import Omega
 
 RPM = 2 * pi / 60

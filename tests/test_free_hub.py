@@ -6,7 +6,8 @@ import unittest
 
 import membrane
 import numpy as np
-from membrane import scene, spool
+from membrane import scene
+from membrane.scene import spool
 from support import ROOT, O, SceneTest, engines_by_class, node_states, release_sail, scratch
 
 sys.path.append(str(ROOT / "scripts"))

@@ -5,7 +5,8 @@ import unittest
 
 import membrane
 import numpy as np
-from membrane import scene, spool
+from membrane import scene
+from membrane.scene import spool
 from support import O, SceneTest
 from yade import wrapper as yade
 

@@ -24,7 +24,7 @@ from .output import NotFinite
 from .parameters import check_steps
 from .progress import Progress
 from .record import Recorder, is_whole
-from .spool import add_spool
+from .scene.spool import add_spool
 
 # The spin-up may take longer steps than the run: no accuracy is asked of it.
 SPIN_UP_STEP = 0.7
