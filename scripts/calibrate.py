@@ -18,9 +18,9 @@ from pathlib import Path
 
 from membrane.commands import file, folder, plain_errors
 from membrane.files import write_json
-from membrane.own import CALIBRATION
 from membrane.parameters import whole
-from membrane.unfinished import new_results
+from membrane.results.own import CALIBRATION
+from membrane.results.unfinished import new_results
 
 with plain_errors("calibrate"):
     import numpy as np

@@ -9,9 +9,9 @@ the options are columns of the table. Exits with 0 for a case that is complete o
 import argparse
 
 from membrane.batch import batch_row
-from membrane.case_folder import COMPLETE
 from membrane.commands import folder, plain_errors
 from membrane.parameters import from_arguments, parse
+from membrane.results.case_folder import COMPLETE
 
 with plain_errors("case"):
     from membrane.case import run_case

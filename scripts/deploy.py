@@ -12,7 +12,7 @@ from pathlib import Path
 from membrane.batch import batch_row, folder_of
 from membrane.commands import folder, plain_errors
 from membrane.parameters import from_arguments, parse
-from membrane.unfinished import new_results
+from membrane.results.unfinished import new_results
 from yade import utils
 
 with plain_errors("deploy"):

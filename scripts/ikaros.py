@@ -26,7 +26,7 @@ from membrane.commands import folder, plain_errors
 from membrane.files import write_json
 from membrane.measures import energy_errors
 from membrane.parameters import SailParameters, add_argument
-from membrane.unfinished import new_results
+from membrane.results.unfinished import new_results
 
 with plain_errors("ikaros"):
     from matplotlib.figure import Figure

@@ -10,7 +10,8 @@ import sys
 from pathlib import Path
 
 from membrane.commands import folder, plain_errors
-from membrane.unfinished import new_results
+from membrane.parameters import PatternParameters
+from membrane.results.unfinished import new_results
 
 with plain_errors("miura"):
     from membrane import pattern_sail
@@ -22,7 +23,7 @@ INSTANTS = (0.0, 0.015, 0.03, 0.05, 0.1, 1.0)  # s
 
 def parameters(duration):
     """What this scene changes of a sail's parameters; film and air are the paper's."""
-    return pattern_sail.PatternParameters(
+    return PatternParameters(
         size=0.019,
         omega=60.0,
         tip_mass=0.36e-3,

@@ -8,13 +8,12 @@ import argparse
 from pathlib import Path
 
 from membrane.commands import file, folder, plain_errors
-from membrane.parameters import from_arguments, parse
-from membrane.unfinished import new_results
+from membrane.parameters import PatternParameters, from_arguments, parse
+from membrane.results.unfinished import new_results
 
 with plain_errors("sail"):
     from membrane import pattern_sail
     from membrane.mesh.sheet_words import described
-    from membrane.pattern_sail import PatternParameters
     from membrane.report import PAGE
 
 

@@ -14,9 +14,9 @@ from pathlib import Path
 from membrane.commands import count, folder, plain_errors
 
 with plain_errors("sweep"):
-    from membrane.case_folder import COMPLETE, DAMAGED, DIVERGED
-    from membrane.parameters import TABLE_2_CASES, TABLE_2_DURATION, SailParameters
-    from membrane.parameters import from_arguments, parse
+    from membrane.parameters import SailParameters, TABLE_2_CASES, TABLE_2_DURATION, from_arguments
+    from membrane.parameters import parse
+    from membrane.results.case_folder import COMPLETE, DAMAGED, DIVERGED
     from sweeping import batch, grid
     from sweeping.report import report
 

@@ -13,8 +13,8 @@ from unittest import mock
 import numpy as np
 from membrane import checkpoint, sail
 from membrane.checkpoint import SCENE, STATE, Checkpoints, save_scene
-from membrane.output import HistoryWriter, VtkSeries, is_whole_series, is_whole_table
 from membrane.parameters import SailParameters
+from membrane.results.output import HistoryWriter, VtkSeries, is_whole_series, is_whole_table
 from support import O, SceneTest, quiet, scratch
 from yade import utils
 

@@ -9,7 +9,7 @@ import unittest
 from dataclasses import replace
 
 from membrane import sail
-from membrane.output import read_history
+from membrane.results.output import read_history
 from support import O, ROOT, CommandTest, long, quiet, run_yade, scratch
 
 

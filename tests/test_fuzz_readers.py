@@ -23,8 +23,8 @@ from membrane.mesh import msh
 from membrane.mesh.fold_format import LETTERS, FoldFile, FoldFrame, read_fold, write_fold
 from membrane.mesh.miura import miura
 from membrane.mesh.patterns import crease_pattern
-from membrane.output import HistoryWriter, read_history
 from membrane.parameters import SailParameters, check, read_parameters
+from membrane.results.output import HistoryWriter, read_history
 from support import FULL, ROOT, gmsh_sheet, scratch
 
 sys.path.append(str(ROOT / "scripts"))

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 from membrane import sail
-from membrane.output import read_history
 from membrane.parameters import SailParameters
+from membrane.results.output import read_history
 from support import O, ROOT, long, main_run, quiet, run_yade, scratch
 
 

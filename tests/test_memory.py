@@ -10,9 +10,9 @@ from unittest import mock
 import numpy as np
 from membrane import sail
 from membrane.files import BadFile
-from membrane.history import read_history
 from membrane.parameters import SailParameters
 from membrane.record import Recorder
+from membrane.results.history import read_history
 from support import ROOT, SceneTest, scratch
 
 sys.path.append(str(ROOT / "scripts"))

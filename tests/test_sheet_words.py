@@ -10,8 +10,8 @@ from dataclasses import replace
 import numpy as np
 from membrane import pattern_sail
 from membrane.mesh.sheet_words import described, doubts, slow_sides
-from membrane.output import read_history
-from membrane.pattern_sail import PatternParameters
+from membrane.parameters import PatternParameters
+from membrane.results.output import read_history
 from support import O, SceneTest, gmsh_sheet, scratch
 
 # A sheet of two squares and the crease between them.

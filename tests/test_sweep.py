@@ -18,20 +18,12 @@ from pathlib import Path
 
 import numpy as np
 from membrane import report, sail
-from membrane.case_folder import (
-    COMPLETE,
-    DAMAGED,
-    DIVERGED,
-    FAILED,
-    KILLED,
-    MISSING,
-    look,
-    part_of,
-)
 from membrane.files import replacing, write_json
-from membrane.history import read_history
-from membrane.output import HistoryWriter
 from membrane.parameters import TABLE_2_CASES, SailParameters
+from membrane.results.case_folder import COMPLETE, DAMAGED, DIVERGED, FAILED, KILLED, MISSING, look
+from membrane.results.case_folder import part_of
+from membrane.results.history import read_history
+from membrane.results.output import HistoryWriter
 from processes import Halt, family, kill, send
 from support import ROOT, long, scratch, yade_environment
 from yade import utils

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 from membrane._load import VERSION
-from membrane.case_folder import LAST_GOOD
-from membrane.unfinished import UNFINISHED
+from membrane.results.case_folder import LAST_GOOD
+from membrane.results.unfinished import UNFINISHED
 from scipy.interpolate import CubicSpline
 
 from .kept_runs import KeptRuns, refuse_another

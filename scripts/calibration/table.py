@@ -4,7 +4,7 @@
 import csv
 
 from membrane.files import BadFile, read_text
-from membrane.history import columns_of
+from membrane.results.history import columns_of
 
 
 def read_table(path, wanted):

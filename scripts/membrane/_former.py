@@ -5,7 +5,7 @@ import sys
 from importlib import import_module
 from importlib.machinery import ModuleSpec
 
-ROOMS = {"fold": "mesh", "spool": "scene"}  # in which they are now
+ROOMS = {"fold": "mesh", "spool": "scene", "output": "results"}  # in which they are now
 
 
 class Former:

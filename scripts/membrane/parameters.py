@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Parameters of the paper's scene: Tables 1 and 2, and what is assumed where they are silent.
 
-One dataclass holds names, defaults, units and ranges; command line, yade-batch table and
-summary.json all come from it.
+And those of a sail from a file. A dataclass of each holds names, defaults, units and ranges;
+command line, yade-batch table and summary.json all come from it.
 """
 
 import argparse
@@ -14,6 +14,7 @@ from numbers import Real
 from .files import BadFile, read_object, shown
 
 TABLE_1, TABLE_2, ASSUMED, RUN = "Table 1", "Table 2", "assumed", "run"
+SHEET, SPIN = "sheet", "spin"
 
 # The cases that the paper compares, and how long it takes to see the largest lag of the tips and
 # the largest lead that follows [s].
@@ -38,9 +39,6 @@ def _parameter(default, unit, source, text, least=0.0, most=inf, above=False, ch
             "choices": choices,
         },
     )
-
-
-parameter = _parameter  # for other scenes
 
 
 class Refused(argparse.ArgumentTypeError, ValueError):
@@ -185,6 +183,69 @@ class SailParameters:
     def as_dict(self):
         """Values by name."""
         return asdict(self)
+
+
+def _as_in_the_paper(name, **changes):
+    """A parameter of the paper's sail, with another default maybe."""
+    (known,) = [item for item in fields(SailParameters) if item.name == name]
+    return field(default=changes.get("default", known.default), metadata=known.metadata)
+
+
+@dataclass(frozen=True)
+class PatternParameters:
+    """Parameters of a sail from a file; those with names as in SailParameters mean the same."""
+
+    unit: float = _parameter(0.0, "m", SHEET, "length of the file's unit; 0: as the file says")
+    size: float = _parameter(0.0, "m", SHEET, "length of the mesh's sides; 0: some 800 triangles")
+    start_frame: int = _parameter(
+        -1, "-", SHEET, "frame to start from; -1: the first folded form, if any", least=-1
+    )
+    flat: bool = _parameter(False, "-", SHEET, "start flat even if there is a folded form")
+
+    omega: float = _parameter(6 * pi, "rad/s", SPIN, "spin rate at the start")
+    hub_radius: float = _parameter(
+        0.0,
+        "m",
+        SPIN,
+        "nodes this near the axis turn steadily, as those of a mesh's group 'hub' do; "
+        "0, and no such group: the sail flies free",
+    )
+    tip_mass: float = _parameter(0.36e-3, "kg", SPIN, "mass at each tip")
+    tips: str = _parameter(
+        "corners",
+        "-",
+        SPIN,
+        "where the tip masses are: at a mesh's group 'tips' or else the corners of the outline, "
+        "or at the nodes farthest from the axis",
+        choices=("corners", "farthest", "none"),
+    )
+    gravity: float = _parameter(0.0, "m/s2", SPIN, "along -z")
+
+    thickness: float = _as_in_the_paper("thickness")
+    young: float = _as_in_the_paper("young")
+    poisson: float = _as_in_the_paper("poisson")
+    density: float = _as_in_the_paper("density")
+    theta0: float = _as_in_the_paper("theta0")
+    alpha: float = _as_in_the_paper("alpha")
+    alpha_crease: float = _as_in_the_paper("alpha_crease", default=100.0)
+    beta: float = _as_in_the_paper("beta", default=3.0)
+    gamma: float = _as_in_the_paper("gamma")
+    zeta: float = _as_in_the_paper("zeta")
+    # The law as printed is no gradient where triangles at a crease are not equally high.
+    crease_law: str = _as_in_the_paper("crease_law", default="conservative")
+    air_density: float = _as_in_the_paper("air_density", default=0.0)
+
+    dt: float = _parameter(0.0, "s", RUN, "time step; 0: half the critical one")
+    duration: float = _as_in_the_paper("duration")
+    history_interval: float = _as_in_the_paper("history_interval")
+    shapes_interval: float = _as_in_the_paper("shapes_interval")
+    energy_tolerance: float = _as_in_the_paper("energy_tolerance")
+    path: str = _as_in_the_paper("path")
+    exchange_period: int = _as_in_the_paper("exchange_period")
+    force_time_step: bool = _as_in_the_paper("force_time_step")
+
+    def __post_init__(self):
+        check(self)
 
 
 def check(parameters):

@@ -5,7 +5,7 @@ The sail starts flat, or in the pattern's folded form, turning as a whole; it fl
 hub is driven. Its centre of mass lies on the spin axis.
 """
 
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, replace
 from math import ceil, pi
 from pathlib import Path
 
@@ -21,13 +21,12 @@ from .mesh.msh import read_msh
 from .mesh.pattern_mesh import default_size, mesh_pattern
 from .mesh.patterns import crease_pattern, nearest_pose
 from .mesh.sheet_words import about_slow_sides, doubts
-from .parameters import RUN, SailParameters, check, check_steps, parameter
+from .parameters import check_steps
 from .progress import warn
 from .record import LEDGER_UNITS, Recorder
 from .sail import Stopwatch, add_membrane, check_step, counts, instants, last_good_saved, march
 from .sail import nearest, set_engines, versions, write_page
 
-SHEET, SPIN = "sheet", "spin"
 MOST_FINER = 100_000  # triangles of a mesh that is made finer than asked for, about
 REMESH = ": remesh, or set allowNegativeStiffness"  # what Membrane says of too flat a triangle
 STEP = 0.5  # of the critical one, by default
@@ -43,69 +42,6 @@ UNITS = {
     "spin_rate": "rad/s",
     **LEDGER_UNITS,
 }
-
-
-def _as_in_the_paper(name, **changes):
-    """A parameter of the paper's sail, with another default maybe."""
-    (known,) = [item for item in fields(SailParameters) if item.name == name]
-    return field(default=changes.get("default", known.default), metadata=known.metadata)
-
-
-@dataclass(frozen=True)
-class PatternParameters:
-    """Parameters of a sail from a file; those with names as in SailParameters mean the same."""
-
-    unit: float = parameter(0.0, "m", SHEET, "length of the file's unit; 0: as the file says")
-    size: float = parameter(0.0, "m", SHEET, "length of the mesh's sides; 0: some 800 triangles")
-    start_frame: int = parameter(
-        -1, "-", SHEET, "frame to start from; -1: the first folded form, if any", least=-1
-    )
-    flat: bool = parameter(False, "-", SHEET, "start flat even if there is a folded form")
-
-    omega: float = parameter(6 * pi, "rad/s", SPIN, "spin rate at the start")
-    hub_radius: float = parameter(
-        0.0,
-        "m",
-        SPIN,
-        "nodes this near the axis turn steadily, as those of a mesh's group 'hub' do; "
-        "0, and no such group: the sail flies free",
-    )
-    tip_mass: float = parameter(0.36e-3, "kg", SPIN, "mass at each tip")
-    tips: str = parameter(
-        "corners",
-        "-",
-        SPIN,
-        "where the tip masses are: at a mesh's group 'tips' or else the corners of the outline, "
-        "or at the nodes farthest from the axis",
-        choices=("corners", "farthest", "none"),
-    )
-    gravity: float = parameter(0.0, "m/s2", SPIN, "along -z")
-
-    thickness: float = _as_in_the_paper("thickness")
-    young: float = _as_in_the_paper("young")
-    poisson: float = _as_in_the_paper("poisson")
-    density: float = _as_in_the_paper("density")
-    theta0: float = _as_in_the_paper("theta0")
-    alpha: float = _as_in_the_paper("alpha")
-    alpha_crease: float = _as_in_the_paper("alpha_crease", default=100.0)
-    beta: float = _as_in_the_paper("beta", default=3.0)
-    gamma: float = _as_in_the_paper("gamma")
-    zeta: float = _as_in_the_paper("zeta")
-    # The law as printed is no gradient where triangles at a crease are not equally high.
-    crease_law: str = _as_in_the_paper("crease_law", default="conservative")
-    air_density: float = _as_in_the_paper("air_density", default=0.0)
-
-    dt: float = parameter(0.0, "s", RUN, "time step; 0: half the critical one")
-    duration: float = _as_in_the_paper("duration")
-    history_interval: float = _as_in_the_paper("history_interval")
-    shapes_interval: float = _as_in_the_paper("shapes_interval")
-    energy_tolerance: float = _as_in_the_paper("energy_tolerance")
-    path: str = _as_in_the_paper("path")
-    exchange_period: int = _as_in_the_paper("exchange_period")
-    force_time_step: bool = _as_in_the_paper("force_time_step")
-
-    def __post_init__(self):
-        check(self)
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,8 +11,8 @@ from yade import wrapper as yade
 from . import measures
 from .files import write_json
 from .geometry import side_lengths, side_rows, triangle_areas
-from .history import read_history
-from .output import HistoryWriter, VtkSeries, is_whole_series, is_whole_table
+from .results.history import read_history
+from .results.output import HistoryWriter, VtkSeries, is_whole_series, is_whole_table
 from .scene.hub import inertia
 
 LEDGER_UNITS = {

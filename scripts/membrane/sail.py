@@ -14,16 +14,16 @@ import yade.config
 from yade import wrapper as yade_classes
 
 from . import __version__, measures, plots, report, scene
-from .case_folder import LAST_GOOD
 from .checkpoint import save_scene
 from .commands import Terminated
 from .files import write_json
 from .mesh import mesh_of, tip_masses
 from .mesh.fold import fold, fold_report
-from .output import NotFinite
 from .parameters import check_steps
 from .progress import Progress
 from .record import Recorder, is_whole
+from .results.case_folder import LAST_GOOD
+from .results.output import NotFinite
 from .scene.spool import add_spool
 
 # The spin-up may take longer steps than the run: no accuracy is asked of it.

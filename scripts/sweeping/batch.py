@@ -9,10 +9,11 @@ import time
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from membrane import own
-from membrane.case_folder import DAMAGED, FAILED, KILLED, MISSING, RUNNING, advice, look, part_of
 from membrane.files import replace_text
 from membrane.progress import Progress
+from membrane.results import own
+from membrane.results.case_folder import DAMAGED, FAILED, KILLED, MISSING, RUNNING, advice, look
+from membrane.results.case_folder import part_of
 
 from .grid import CASES, table
 

@@ -5,11 +5,11 @@ from contextlib import suppress
 from dataclasses import fields, replace
 from pathlib import PurePath
 
-from membrane import own
-from membrane.case_folder import PART, RESULT, Damaged, check_parameters, finished
-from membrane.case_folder import refuse_another
 from membrane.files import BadFile, read_object, shown, write_json
 from membrane.parameters import TABLE_2_CASES, SailParameters, check_name
+from membrane.results import own
+from membrane.results.case_folder import Damaged, PART, RESULT, check_parameters, finished
+from membrane.results.case_folder import refuse_another
 
 AXES = tuple(TABLE_2_CASES)  # alpha_crease, beta
 PLAN = "sweep.json"  # what a sweep consists of

@@ -4,10 +4,10 @@
 from dataclasses import fields
 from pathlib import Path
 
-from membrane import own
-from membrane.case_folder import COMPLETE, DIVERGED
 from membrane.files import replace_text
 from membrane.parameters import SailParameters
+from membrane.results import own
+from membrane.results.case_folder import COMPLETE, DIVERGED
 
 from .grid import AXES, CURVES, PAGE, RESULTS, SWING, TABLE, refuse_other_results
 from .page import render

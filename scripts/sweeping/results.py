@@ -6,9 +6,9 @@ import io
 from dataclasses import dataclass
 
 import numpy as np
-from membrane.case_folder import COMPLETE, Status, look
 from membrane.files import replace_text
 from membrane.measures import first_time_above, lag_and_half_period, swing
+from membrane.results.case_folder import COMPLETE, Status, look
 
 from .grid import AXES, case_folders, text
 

@@ -6,9 +6,9 @@ import shutil
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from ..files import flush, settle
 from . import own
 from .case_folder import PART
-from .files import flush, settle
 
 UNFINISHED = "unfinished"  # folder within the output folder
 GOING, GONE = "earlier.part", "earlier"  # where earlier results are while they are exchanged

@@ -13,7 +13,7 @@ import stat
 from contextlib import contextmanager, suppress
 from pathlib import PurePath
 
-from .files import BadFile, read_object, shown, write_json
+from ..files import BadFile, read_object, shown, write_json
 
 LOCK = "lock"
 OURS = b"made by membrane, which may remove this folder and all that is in it\n"  # in a lock

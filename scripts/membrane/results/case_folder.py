@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from .files import BadFile, read_object, shown
+from ..files import BadFile, read_object, shown
+from ..parameters import SailParameters
 from .history import read_history
 from .own import LOCK
-from .parameters import SailParameters
 
 COMPLETE, DIVERGED = "complete", "diverged"  # outcomes: the case is finished
 FAILED, KILLED, RUNNING, MISSING = "failed", "killed", "running", "not begun"

@@ -19,8 +19,7 @@ from vtkmodules.vtkCommonDataModel import VTK_LINE, VTK_TRIANGLE, vtkCellArray, 
 from vtkmodules.vtkCommonMisc import vtkErrorCode
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
 
-from .files import BadFile, add_to_sum, flush, is_value, named, read_text, replace_text
-from .files import write_json
+from ..files import BadFile, add_to_sum, flush, is_value, named, read_text, replace_text, write_json
 from .history import read_history  # noqa: F401  (belongs to HistoryWriter; free of VTK)
 
 

@@ -6,7 +6,7 @@ import io
 
 import numpy as np
 
-from .files import BadFile, is_value, read_text, shown
+from ..files import BadFile, is_value, read_text, shown
 
 
 def read_history(path):

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
-from .files import BadFile, read_object
-from .geometry import MOUNTAIN, VALLEY
-from .mesh import mesh_of
+from ..files import BadFile, read_object
+from ..geometry import MOUNTAIN, VALLEY
+from ..mesh import mesh_of
+from ..parameters import PatternParameters, SailParameters, from_values
 from .output import list_series, read_cells, read_frame, read_history
-from .parameters import SailParameters, from_values
 
 TETHER = 2  # the series' field `kind`
 
@@ -114,8 +114,6 @@ def read_run(folder):
 
 def _parameters(file, values):
     """Parameters of the paper's sail or of one made from a pattern."""
-    from .pattern_sail import PatternParameters  # which loads much that is not needed otherwise
-
     if not isinstance(values, dict):
         raise BadFile(file, "parameters", "must be an object")
     kind = SailParameters if "outer_width" in values else PatternParameters
