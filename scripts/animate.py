@@ -6,7 +6,7 @@ import argparse
 from membrane.commands import folder, plain_errors
 
 with plain_errors("animate"):
-    from membrane import animation
+    from membrane.view import animation
 
 
 def main():

@@ -16,7 +16,8 @@ from membrane.results.unfinished import new_results
 from yade import utils
 
 with plain_errors("deploy"):
-    from membrane import report, sail, window
+    from membrane import sail
+    from membrane.view import report, window
 
 
 def command_line():
@@ -58,7 +59,7 @@ def main():
             look=look,
         )
         if arguments.animation:
-            from membrane.animation import animate  # loads VTK's renderer
+            from membrane.view.animation import animate  # loads VTK's renderer
 
             films = animate(part)
     found, wall = summary["measures"], summary["wall_time"]

@@ -18,10 +18,10 @@ sys.path.append(str(Path(sys.argv[0]).resolve().parent))
 
 with plain_errors("disk"):
     from matplotlib.figure import Figure
-    from membrane import plots, scene
+    from membrane import scene
+    from membrane.view import plots
     from verification.disk_mesh import disk_mesh
-    from verification.spinning import OMEGA, disk_frequency, frequencies2, spin
-    from verification.spinning import spinning_net
+    from verification.spinning import OMEGA, disk_frequency, frequencies2, spin, spinning_net
 
 CELLS = (4, 8, 16)  # from the centre to the edge
 POISSON = 1 / 3  # that of a net of equilateral triangles, whatever the film's

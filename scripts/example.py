@@ -2,10 +2,11 @@
 """A sail of one's own: smaller, thicker, with three fold lines, on a spool that turns faster."""
 
 import numpy as np
-from membrane import plots, scene
+from membrane import scene
 from membrane.mesh import sail_mesh
 from membrane.mesh.fold import fold
 from membrane.scene import spool
+from membrane.view import plots
 from yade.wrapper import Omega
 
 omega = 30.0  # rad/s

@@ -30,10 +30,11 @@ from membrane.results.unfinished import new_results
 
 with plain_errors("ikaros"):
     from matplotlib.figure import Figure
-    from membrane import plots, sail
+    from membrane import sail
     from membrane.record import Recorder
-    from membrane.report import PAGE
     from membrane.scene import hub
+    from membrane.view import plots
+    from membrane.view.report import PAGE
     from yade.wrapper import Omega
 
 RPM = 2 * pi / 60

@@ -15,7 +15,7 @@ from membrane.results.unfinished import new_results
 
 with plain_errors("miura"):
     from membrane import pattern_sail
-    from membrane.report import PAGE
+    from membrane.view.report import PAGE
 
 PATTERN = Path(sys.argv[0]).resolve().parent / "patterns" / "miura.fold"
 INSTANTS = (0.0, 0.015, 0.03, 0.05, 0.1, 1.0)  # s

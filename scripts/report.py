@@ -6,7 +6,7 @@ import argparse
 from membrane.commands import folder, plain_errors
 
 with plain_errors("report"):
-    from membrane import report
+    from membrane.view import report
 
 
 def main():

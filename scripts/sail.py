@@ -14,7 +14,7 @@ from membrane.results.unfinished import new_results
 with plain_errors("sail"):
     from membrane import pattern_sail
     from membrane.mesh.sheet_words import described
-    from membrane.report import PAGE
+    from membrane.view.report import PAGE
 
 
 def command_line():

@@ -10,7 +10,7 @@ from unittest import mock
 
 import numpy as np
 from matplotlib.figure import Figure
-from membrane import plots
+from membrane.view import plots
 from mpl_toolkits.mplot3d import proj3d
 
 from support import ROOT, scratch

@@ -114,6 +114,6 @@ install(TARGETS _membrane LIBRARY DESTINATION ${package_dir})
 install(DIRECTORY scripts/membrane/ DESTINATION ${package_dir} FILES_MATCHING PATTERN *.py
         PATTERN __pycache__ EXCLUDE PATTERN viewer EXCLUDE)
 # The viewer of report.html, if `scripts/run.sh viewer` has made it.
-install(FILES ${python_dir}/membrane/viewer.html DESTINATION ${package_dir} OPTIONAL)
+install(FILES ${python_dir}/membrane/view/viewer.html DESTINATION ${package_dir}/view OPTIONAL)
 install(DIRECTORY scripts/ DESTINATION share/membrane FILES_MATCHING PATTERN *.py PATTERN *.fold
         PATTERN membrane EXCLUDE PATTERN __pycache__ EXCLUDE)

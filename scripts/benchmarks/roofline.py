@@ -20,7 +20,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
-from membrane.plots import save
+from membrane.view.plots import save
 
 from . import cases, results
 from .sheet import SIDES

@@ -4,7 +4,7 @@
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
-from membrane.plots import save
+from membrane.view.plots import save
 
 from . import COLUMNS
 

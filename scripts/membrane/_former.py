@@ -6,6 +6,7 @@ from importlib import import_module
 from importlib.machinery import ModuleSpec
 
 ROOMS = {"fold": "mesh", "spool": "scene", "output": "results"}  # in which they are now
+ROOMS |= dict.fromkeys(("plots", "report", "animation", "window"), "view")
 
 
 class Former:

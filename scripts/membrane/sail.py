@@ -13,7 +13,7 @@ import numpy as np
 import yade.config
 from yade import wrapper as yade_classes
 
-from . import __version__, measures, plots, report, scene
+from . import __version__, measures, scene
 from .checkpoint import save_scene
 from .commands import Terminated
 from .files import write_json
@@ -25,6 +25,7 @@ from .record import Recorder, is_whole
 from .results.case_folder import LAST_GOOD
 from .results.output import NotFinite
 from .scene.spool import add_spool
+from .view import plots, report
 
 # The spin-up may take longer steps than the run: no accuracy is asked of it.
 SPIN_UP_STEP = 0.7

@@ -8,8 +8,9 @@ from pathlib import Path
 import membrane as plugin
 import numpy as np
 from matplotlib.figure import Figure
-from membrane import plots, scene
+from membrane import scene
 from membrane.files import replace_text
+from membrane.view import plots
 from yade import wrapper as yade
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -7,7 +7,7 @@ Figures are drawn to files only; no window system is needed.
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.figure import Figure
-from membrane.plots import save
+from membrane.view.plots import save
 
 DPI = 110
 ALPHA, BETA = r"$\alpha_c$", r"$\beta$"

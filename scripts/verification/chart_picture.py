@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from matplotlib.ticker import LogLocator, NullFormatter
 from matplotlib.transforms import Bbox
-from membrane.plots import save
+from membrane.view.plots import save
 
 TITLES = {
     "deployment": ("Early deployment curve", "processor time for 1 s [s]", "rms error of rate [-]"),

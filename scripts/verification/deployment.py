@@ -10,8 +10,9 @@ from functools import cache
 
 import numpy as np
 from matplotlib.figure import Figure
-from membrane import measures, plots, sail, scene
+from membrane import measures, sail, scene
 from membrane.parameters import TABLE_2_DURATION, SailParameters
+from membrane.view import plots
 from yade import wrapper as yade
 
 from . import ROOT, Check, at_most, recorded

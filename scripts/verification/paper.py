@@ -17,7 +17,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from membrane.measures import lag_and_half_period
 from membrane.parameters import TABLE_2_CASES, SailParameters
-from membrane.plots import save
+from membrane.view.plots import save
 from sweeping.pictures import draw_curves
 
 from . import ROOT, Check, at_most, recorded

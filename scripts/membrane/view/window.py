@@ -12,7 +12,7 @@ import numpy as np
 from yade import runtime
 from yade import wrapper as yade
 
-from . import _load
+from .. import _load
 
 _plugin = _load.load()
 

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
-from .files import replacing
+from ..files import replacing
 
 FILM = np.array([0.98, 0.80, 0.42])
 SPOOL = np.array([0.45, 0.48, 0.55])

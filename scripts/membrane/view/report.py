@@ -12,12 +12,12 @@ from pathlib import Path
 
 import numpy as np
 
-from .files import BadFile, replace_text
-from .geometry import crease_angles
-from .results import own
-from .results.finished_run import read_run
-from .results.output import read_frame
-from .results.unfinished import name_of
+from ..files import BadFile, replace_text
+from ..geometry import crease_angles
+from ..results import own
+from ..results.finished_run import read_run
+from ..results.output import read_frame
+from ..results.unfinished import name_of
 
 PAGE = "report.html"
 TEMPLATE = Path(__file__).with_name("viewer.html")

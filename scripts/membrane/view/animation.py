@@ -32,11 +32,11 @@ from vtkmodules.vtkRenderingCore import (
     vtkTextActor,
 )
 
-from .files import replacing
+from ..files import replacing
+from ..results import own
+from ..results.finished_run import read_run
+from ..results.output import cell_array, read_frame
 from .plots import FILM, SPOOL, VIEW
-from .results import own
-from .results.finished_run import read_run
-from .results.output import cell_array, read_frame
 
 FILES = ("sail.mp4", "sail.gif")
 SIZE = (1280, 720)  # of the film [pixels]
