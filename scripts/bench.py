@@ -23,7 +23,7 @@ with plain_errors("bench"):
     import benchmarks
     from benchmarks import lammps, results
     from benchmarks.quiet import Quiet
-    from membrane.sail import versions
+    from membrane.run.sail import versions
 
 MODULES = {
     "loops": "functors and engine of path law2 beside YADE's own sphere contact",

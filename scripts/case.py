@@ -14,7 +14,7 @@ from membrane.parameters import from_arguments, parse
 from membrane.results.case_folder import COMPLETE
 
 with plain_errors("case"):
-    from membrane.case import run_case
+    from membrane.run.case import run_case
 
 
 def command_line():

@@ -16,7 +16,7 @@ from membrane.results.unfinished import new_results
 from yade import utils
 
 with plain_errors("deploy"):
-    from membrane import sail
+    from membrane.run import sail
     from membrane.view import report, window
 
 

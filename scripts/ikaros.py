@@ -30,8 +30,8 @@ from membrane.results.unfinished import new_results
 
 with plain_errors("ikaros"):
     from matplotlib.figure import Figure
-    from membrane import sail
-    from membrane.record import Recorder
+    from membrane.run import sail
+    from membrane.run.record import Recorder
     from membrane.scene import hub
     from membrane.view import plots
     from membrane.view.report import PAGE

@@ -14,7 +14,7 @@ from membrane.parameters import PatternParameters
 from membrane.results.unfinished import new_results
 
 with plain_errors("miura"):
-    from membrane import pattern_sail
+    from membrane.run import pattern_sail
     from membrane.view.report import PAGE
 
 PATTERN = Path(sys.argv[0]).resolve().parent / "patterns" / "miura.fold"

@@ -12,8 +12,8 @@ from membrane.parameters import PatternParameters, from_arguments, parse
 from membrane.results.unfinished import new_results
 
 with plain_errors("sail"):
-    from membrane import pattern_sail
     from membrane.mesh.sheet_words import described
+    from membrane.run import pattern_sail
     from membrane.view.report import PAGE
 
 

@@ -57,7 +57,7 @@ def run(name, full):
 def save(name, found):
     """Put the results of one module into RESULTS, beside those of the others."""
     from membrane.files import write_json
-    from membrane.sail import versions
+    from membrane.run.sail import versions
 
     entries, made_with = [], {}
     if RESULTS.exists():

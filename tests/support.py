@@ -14,10 +14,11 @@ from pathlib import Path
 
 import membrane
 import numpy as np
-from membrane import pattern_sail, sail, scene
+from membrane import scene
 from membrane.mesh import sail_mesh
 from membrane.parameters import PatternParameters, SailParameters
 from membrane.results.output import read_history
+from membrane.run import pattern_sail, sail
 from membrane.scene import spool
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from membrane import scene
 from membrane.results.unfinished import UNFINISHED
-from membrane.sail import LAST_GOOD
+from membrane.run.sail import LAST_GOOD
 from processes import Halt
 from support import O, ROOT, scratch, yade_environment
 

@@ -8,8 +8,8 @@ import sys
 import unittest
 from dataclasses import replace
 
-from membrane import sail
 from membrane.results.output import read_history
+from membrane.run import sail
 from support import O, ROOT, CommandTest, long, quiet, run_yade, scratch
 
 

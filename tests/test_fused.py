@@ -10,8 +10,9 @@ import unittest
 import __main__
 import membrane
 import numpy as np
-from membrane import sail as sails, scene
+from membrane import scene
 from membrane.parameters import SailParameters
+from membrane.run import sail as sails
 from membrane.scene import spool
 from support import (
     O,

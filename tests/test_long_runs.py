@@ -5,9 +5,9 @@ import unittest
 from dataclasses import replace
 
 import numpy as np
-from membrane import sail
 from membrane.parameters import SailParameters
 from membrane.results.output import read_history
+from membrane.run import sail
 from support import O, ROOT, long, main_run, quiet, run_yade, scratch
 
 

@@ -8,11 +8,11 @@ import unittest
 from unittest import mock
 
 import numpy as np
-from membrane import sail
 from membrane.files import BadFile
 from membrane.parameters import SailParameters
-from membrane.record import Recorder
 from membrane.results.history import read_history
+from membrane.run import sail
+from membrane.run.record import Recorder
 from support import ROOT, SceneTest, scratch
 
 sys.path.append(str(ROOT / "scripts"))

@@ -6,13 +6,13 @@ import os
 import unittest
 from pathlib import Path
 
-from membrane.case import run_case
 from membrane.files import replace_text
 from membrane.parameters import SailParameters
 from membrane.results import own
 from membrane.results.case_folder import part_of
 from membrane.results.output import VtkSeries
 from membrane.results.unfinished import RESULTS, UNFINISHED, new_results
+from membrane.run.case import run_case
 from support import scratch
 
 

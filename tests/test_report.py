@@ -17,11 +17,11 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.figure import Figure
 from matplotlib.image import imread
-from membrane import sail
 from membrane.geometry import crease_angles
 from membrane.mesh import sail_mesh
 from membrane.parameters import SailParameters
 from membrane.results.output import list_series, read_frame, read_history
+from membrane.run import sail
 from membrane.view import plots, report
 from support import ROOT, CommandTest, free_hub_run, pattern_run, scratch, short_run
 

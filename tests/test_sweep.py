@@ -17,13 +17,13 @@ from functools import lru_cache, partial
 from pathlib import Path
 
 import numpy as np
-from membrane import sail
 from membrane.files import replacing, write_json
 from membrane.parameters import TABLE_2_CASES, SailParameters
 from membrane.results.case_folder import COMPLETE, DAMAGED, DIVERGED, FAILED, KILLED, MISSING, look
 from membrane.results.case_folder import part_of
 from membrane.results.history import read_history
 from membrane.results.output import HistoryWriter
+from membrane.run import sail
 from membrane.view import report
 from processes import Halt, family, kill, send
 from support import ROOT, long, scratch, yade_environment

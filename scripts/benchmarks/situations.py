@@ -11,10 +11,10 @@ import time
 from pathlib import Path
 
 import numpy as np
-from membrane import sail as sails
 from membrane import scene
 from membrane.mesh import sail_mesh
 from membrane.parameters import SailParameters
+from membrane.run import sail as sails
 from yade import wrapper as yade
 
 from .sheet import square_sheet

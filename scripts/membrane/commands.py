@@ -8,13 +8,10 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from .parameters import Refused, check_name, whole
+from .progress import Terminated
 
 STOPPED, TERMINATED = 130, 143  # exit statuses after Ctrl-C and SIGTERM, as shells have them
 DEBIAN = {"vtkmodules": "vtk9"}  # packages whose names in Python and in Debian differ
-
-
-class Terminated(BaseException):
-    """SIGTERM or SIGHUP has come; as an exception, so that what was begun is cleared away."""
 
 
 def folder(text):

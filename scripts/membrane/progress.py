@@ -1,9 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Progress of long work on the terminal: percentage, simulated time, speed, time left; stages."""
+"""Progress of long work on the terminal: percentage, simulated time, speed, time left; stages.
+
+And how such work hears of an end from outside.
+"""
 
 import sys
 import time
 from contextlib import contextmanager
+
+
+class Terminated(BaseException):
+    """SIGTERM or SIGHUP has come; as an exception, so that what was begun is cleared away."""
 
 
 class Progress:

@@ -13,8 +13,9 @@ buckled.
 """
 
 import numpy as np
-from membrane import sail, scene
+from membrane import scene
 from membrane.parameters import SailParameters
+from membrane.run import sail
 
 from .common import Model, O, figure, folder, grid, save, write_table
 

@@ -10,8 +10,9 @@ from functools import cache
 
 import numpy as np
 from matplotlib.figure import Figure
-from membrane import measures, sail, scene
+from membrane import measures, scene
 from membrane.parameters import TABLE_2_DURATION, SailParameters
+from membrane.run import sail
 from membrane.view import plots
 from yade import wrapper as yade
 

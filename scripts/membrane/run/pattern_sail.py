@@ -12,21 +12,21 @@ from pathlib import Path
 import numpy as np
 from yade import wrapper as yade_classes
 
-from . import Membrane, measures, scene
-from .files import write_json
-from .geometry import area_vectors, crease_angles, crossings, side_rows, triangle_areas
-from .mesh import tip_masses
-from .mesh.fold_format import FoldFile, FoldFrame, fold_angles, read_fold, write_fold
-from .mesh.msh import read_msh
-from .mesh.pattern_mesh import default_size, mesh_pattern
-from .mesh.patterns import crease_pattern, nearest_pose
-from .mesh.sheet_words import about_slow_sides, doubts
-from .parameters import check_steps
-from .progress import warn
+from .. import Membrane, measures, scene
+from ..files import write_json
+from ..geometry import area_vectors, crease_angles, crossings, side_rows, triangle_areas
+from ..mesh import tip_masses
+from ..mesh.fold_format import FoldFile, FoldFrame, fold_angles, read_fold, write_fold
+from ..mesh.msh import read_msh
+from ..mesh.pattern_mesh import default_size, mesh_pattern
+from ..mesh.patterns import crease_pattern, nearest_pose
+from ..mesh.sheet_words import about_slow_sides, doubts
+from ..parameters import check_steps
+from ..progress import warn
+from ..view import plots
 from .record import LEDGER_UNITS, Recorder
 from .sail import Stopwatch, add_membrane, check_step, counts, instants, last_good_saved, march
 from .sail import nearest, set_engines, versions, write_page
-from .view import plots
 
 MOST_FINER = 100_000  # triangles of a mesh that is made finer than asked for, about
 REMESH = ": remesh, or set allowNegativeStiffness"  # what Membrane says of too flat a triangle

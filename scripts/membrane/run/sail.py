@@ -13,19 +13,18 @@ import numpy as np
 import yade.config
 from yade import wrapper as yade_classes
 
-from . import __version__, measures, scene
+from .. import __version__, measures, scene
+from ..files import write_json
+from ..mesh import mesh_of, tip_masses
+from ..mesh.fold import fold, fold_report
+from ..parameters import check_steps
+from ..progress import Progress, Terminated
+from ..results.case_folder import LAST_GOOD
+from ..results.output import NotFinite
+from ..scene.spool import add_spool
+from ..view import plots, report
 from .checkpoint import save_scene
-from .commands import Terminated
-from .files import write_json
-from .mesh import mesh_of, tip_masses
-from .mesh.fold import fold, fold_report
-from .parameters import check_steps
-from .progress import Progress
 from .record import Recorder, is_whole
-from .results.case_folder import LAST_GOOD
-from .results.output import NotFinite
-from .scene.spool import add_spool
-from .view import plots, report
 
 # The spin-up may take longer steps than the run: no accuracy is asked of it.
 SPIN_UP_STEP = 0.7

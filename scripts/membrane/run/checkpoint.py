@@ -11,7 +11,7 @@ from pathlib import Path
 
 from yade.wrapper import Omega
 
-from .files import add_to_sum, flush, read_object, replace_text, settle
+from ..files import add_to_sum, flush, read_object, replace_text, settle
 
 SCENE, STATE = "scene.yade.gz", "state.json"
 KEPT = 2  # checkpoints: should the newest turn out to be damaged, there is one to go back to

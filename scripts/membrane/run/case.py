@@ -11,12 +11,12 @@ import shutil
 from contextlib import suppress
 from pathlib import Path
 
+from ..files import TEMPORARY, flush, read_object, settle, write_json
+from ..results import own
+from ..results.case_folder import BEGUN, COMPLETE, DIVERGED, FAILURE, RESULT, SAVED, finished
+from ..results.case_folder import part_of, refuse_another
 from . import sail
 from .checkpoint import Checkpoints
-from .files import TEMPORARY, flush, read_object, settle, write_json
-from .results import own
-from .results.case_folder import BEGUN, COMPLETE, DIVERGED, FAILURE, RESULT, SAVED, finished
-from .results.case_folder import part_of, refuse_another
 
 
 def run_case(p, folder, checkpoint_every=60.0, pictures=True):

@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 from yade import wrapper as yade
 
-from . import measures
-from .files import write_json
-from .geometry import side_lengths, side_rows, triangle_areas
-from .results.history import read_history
-from .results.output import HistoryWriter, VtkSeries, is_whole_series, is_whole_table
-from .scene.hub import inertia
+from .. import measures
+from ..files import write_json
+from ..geometry import side_lengths, side_rows, triangle_areas
+from ..results.history import read_history
+from ..results.output import HistoryWriter, VtkSeries, is_whole_series, is_whole_table
+from ..scene.hub import inertia
 
 LEDGER_UNITS = {
     "kinetic_energy": "J",
