@@ -11,19 +11,16 @@ import argparse
 import datetime
 import importlib
 import sys
-from pathlib import Path
 
 from membrane.commands import count, plain_errors
 from membrane.progress import announcer
 
-SCRIPTS = Path(sys.argv[0]).resolve().parent  # YADE keeps __file__ for itself
-sys.path.append(str(SCRIPTS))
-
 with plain_errors("bench"):
-    import benchmarks
-    from benchmarks import lammps, results
-    from benchmarks.quiet import Quiet
     from membrane.run.sail import versions
+    from membrane.study import benchmarks
+    from membrane.study.benchmarks import lammps, results
+    from membrane.study.benchmarks.quiet import Quiet
+    from membrane.study.sources import REFERENCE
 
 MODULES = {
     "loops": "functors and engine of path law2 beside YADE's own sphere contact",
@@ -34,7 +31,7 @@ MODULES = {
     "threads": "two threads beside one, and beside LAMMPS on two",
     "roofline": "kernels beside the limits of one core; instructions and cache misses",
 }
-RESULTS = SCRIPTS.parent / "reference" / "bench.json"
+RESULTS = REFERENCE / "bench.json"
 
 
 def command_line():
@@ -100,7 +97,7 @@ def main():
         tell(f"{number} of {len(chosen)}, {name}: {MODULES[name]}")
         settings.quiet.patience = arguments.patience
         try:
-            found = importlib.import_module(f"benchmarks.{name}").measure(settings)
+            found = importlib.import_module(f"membrane.study.benchmarks.{name}").measure(settings)
         except RuntimeError as error:
             print(f"bench: {name}: {error}", file=sys.stderr)
             return 1

@@ -24,14 +24,15 @@ from membrane.results.unfinished import new_results
 
 with plain_errors("calibrate"):
     import numpy as np
-    from calibration import CHAOS, COLUMNS, NAMES
-    from calibration.picture import draw
-    from calibration.runs import Deployments
-    from calibration.search import misfit, search
-    from calibration.surface import HALF, at_bound, refine
-    from calibration.target import read_target
+    from membrane.study.calibration import CHAOS, COLUMNS, NAMES
+    from membrane.study.calibration.picture import draw
+    from membrane.study.calibration.runs import Deployments
+    from membrane.study.calibration.search import misfit, search
+    from membrane.study.calibration.surface import HALF, at_bound, refine
+    from membrane.study.calibration.target import read_target
 
 BOUNDS = {"alpha_crease": (10.0, 1000.0), "beta": (1.0, 100.0)}
+DEPLOY = Path(__file__).resolve().with_name("deploy.py")
 OURS = ("duration", "history-interval", "shapes-interval", "no-pictures")
 CLOSE_CORRELATION = 0.95
 KEPT = "unfinished_runs.jsonl"  # in the output folder until all is done
@@ -193,7 +194,7 @@ def main():
         print(f"run {count:3d}  {took:5.0f} s  {where}: {off}", file=sys.stderr, flush=True)
 
     target = read_target(arguments.target, arguments.column or (), arguments.until)
-    simulate = Deployments(names, target, [*scene, *held], tell)
+    simulate = Deployments(DEPLOY, names, target, [*scene, *held], tell)
     with new_results(
         arguments.out, CALIBRATION
     ) as part:  # a folder that cannot be is refused before the runs

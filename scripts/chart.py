@@ -8,9 +8,7 @@ energy ledger. Run it by `scripts/run.sh chart [options]`. Writes reference/char
 
 import argparse
 import statistics
-import sys
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 from membrane.commands import count, folder, plain_errors
@@ -19,16 +17,13 @@ from membrane.parameters import SailParameters
 from membrane.progress import announcer
 from yade import wrapper as yade
 
-SCRIPTS = Path(sys.argv[0]).resolve().parent  # YADE keeps __file__ for itself
-sys.path.append(str(SCRIPTS))
-
 with plain_errors("chart"):
     from membrane import scene
-    from verification import deployment, spinning
-    from verification.chart_picture import TITLES, draw
-    from verification.variant import Variant
+    from membrane.study.sources import REFERENCE
+    from membrane.study.verification import deployment, spinning
+    from membrane.study.verification.chart_picture import TITLES, draw
+    from membrane.study.verification.variant import Variant
 
-REFERENCE = SCRIPTS.parent / "reference"
 DURATION, INTERVAL = 0.1, 1e-3  # of the deployments [s]; single curves can be compared so long
 FINEST = {"refine": 4, "dt": 1.25e-6}
 TURNS = 1.5  # of the disks

@@ -7,21 +7,19 @@ cells. Run it by `scripts/run.sh disk [options]`; the picture is disk.png.
 """
 
 import argparse
-import sys
 from pathlib import Path
 
 import numpy as np
 from membrane.commands import folder, plain_errors
 from yade.wrapper import Omega
 
-sys.path.append(str(Path(sys.argv[0]).resolve().parent))
-
 with plain_errors("disk"):
     from matplotlib.figure import Figure
     from membrane import scene
+    from membrane.study.verification.disk_mesh import disk_mesh
+    from membrane.study.verification.spinning import OMEGA, disk_frequency, frequencies2, spin
+    from membrane.study.verification.spinning import spinning_net
     from membrane.view import plots
-    from verification.disk_mesh import disk_mesh
-    from verification.spinning import OMEGA, disk_frequency, frequencies2, spin, spinning_net
 
 CELLS = (4, 8, 16)  # from the centre to the edge
 POISSON = 1 / 3  # that of a net of equilateral triangles, whatever the film's

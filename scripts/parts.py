@@ -7,9 +7,7 @@ reference/parts.csv and prints advice.
 
 import argparse
 import statistics
-import sys
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from membrane.commands import count, plain_errors
@@ -17,14 +15,12 @@ from membrane.files import replace_text
 from membrane.parameters import SailParameters
 from membrane.progress import announcer
 
-SCRIPTS = Path(sys.argv[0]).resolve().parent  # YADE keeps __file__ for itself
-sys.path.append(str(SCRIPTS))
-
 with plain_errors("parts"):
-    from verification import deployment
-    from verification.variant import Variant
+    from membrane.study.sources import REFERENCE
+    from membrane.study.verification import deployment
+    from membrane.study.verification.variant import Variant
 
-TABLE = SCRIPTS.parent / "reference" / "parts.csv"
+TABLE = REFERENCE / "parts.csv"
 SAMPLES = (0.05, 0.1)  # [s]; single curves can be compared until then
 LAG_TIME = 0.45  # [s]; the largest lag comes before
 INTERVAL = 1e-3  # [s]

@@ -9,12 +9,8 @@ import argparse
 import importlib
 import sys
 import time
-from pathlib import Path
 
 from membrane.commands import plain_errors
-
-SCRIPTS = Path(sys.argv[0]).resolve().parent  # YADE keeps __file__ for itself
-sys.path.append(str(SCRIPTS))
 
 TOPICS = {
     "timestep": "estimate of the critical time step against the measured limit",
@@ -45,7 +41,7 @@ def main():
     arguments = command_line()
     for name in arguments.only:
         start = time.monotonic()
-        line = importlib.import_module(f"stability_maps.{name}").run(arguments.quick)
+        line = importlib.import_module(f"membrane.study.stability.{name}").run(arguments.quick)
         print(f"{name}: {line} ({time.monotonic() - start:.0f} s)", flush=True)
     return 0
 

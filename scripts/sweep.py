@@ -14,11 +14,11 @@ from pathlib import Path
 from membrane.commands import count, folder, plain_errors
 
 with plain_errors("sweep"):
-    from membrane.parameters import SailParameters, TABLE_2_CASES, TABLE_2_DURATION, from_arguments
+    from membrane.parameters import TABLE_2_CASES, TABLE_2_DURATION, SailParameters, from_arguments
     from membrane.parameters import parse
     from membrane.results.case_folder import COMPLETE, DAMAGED, DIVERGED
-    from sweeping import batch, grid
-    from sweeping.report import report
+    from membrane.study.sweep import batch, grid
+    from membrane.study.sweep.report import report
 
 
 def command_line():

@@ -10,15 +10,12 @@ import importlib
 import json
 import sys
 import time
-from pathlib import Path
 
 from membrane.commands import plain_errors
-
-SCRIPTS = Path(sys.argv[0]).resolve().parent  # YADE keeps __file__ for itself
-sys.path.append(str(SCRIPTS))
+from membrane.study.sources import REFERENCE
 
 MODULES = ["forces", "sheets", "spinning", "deployment", "paper"]
-RESULTS = SCRIPTS.parent / "reference" / "verification.json"
+RESULTS = REFERENCE / "verification.json"
 
 
 def command_line():
@@ -43,10 +40,10 @@ def command_line():
 
 def run(name, full):
     """Run one module and print its table; returns its list of Check."""
-    from verification import table
+    from membrane.study.verification import table
 
     start = time.monotonic()
-    found = importlib.import_module(f"verification.{name}").checks(full)
+    found = importlib.import_module(f"membrane.study.verification.{name}").checks(full)
     if not found or len({check.name for check in found}) < len(found):
         raise RuntimeError("it has no checks, or two of one name")
     print("\n".join(table(name, found)), flush=True)

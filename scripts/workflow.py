@@ -16,7 +16,7 @@ from membrane.commands import plain_errors
 
 with plain_errors("workflow"):
     from membrane.parameters import check_name
-    from sweeping.config import check_file, check_words
+    from membrane.study.sweep.config import check_file, check_words
 
 SNAKEFILE = Path(__file__).resolve().parent / "workflow" / "Snakefile"
 

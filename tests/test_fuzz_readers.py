@@ -6,13 +6,11 @@ meanwhile, so that a count that is believed before it is borne out makes the tes
 """
 
 import copy
-import importlib
 import json
 import os
 import random
 import re
 import resource
-import sys
 import unittest
 from functools import lru_cache
 
@@ -25,10 +23,9 @@ from membrane.mesh.miura import miura
 from membrane.mesh.patterns import crease_pattern
 from membrane.parameters import SailParameters, check, read_parameters
 from membrane.results.output import HistoryWriter, read_history
-from support import FULL, ROOT, gmsh_sheet, scratch
+from membrane.study.calibration import target
+from support import FULL, gmsh_sheet, scratch
 
-sys.path.append(str(ROOT / "scripts"))
-target = importlib.import_module("calibration.target")
 
 FILES = 10_000 if os.environ.get(FULL) else 1_500
 MEMORY = 2**30  # bytes that a reader of files of a few kilobytes may ask for

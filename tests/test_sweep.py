@@ -10,7 +10,6 @@ import resource
 import shutil
 import signal
 import subprocess
-import sys
 import unittest
 from dataclasses import replace
 from functools import lru_cache, partial
@@ -24,14 +23,12 @@ from membrane.results.case_folder import part_of
 from membrane.results.history import read_history
 from membrane.results.output import HistoryWriter
 from membrane.run import sail
+from membrane.study.sweep import grid, results
 from membrane.view import report
 from processes import Halt, family, kill, send
 from support import ROOT, long, scratch, yade_environment
 from yade import utils
 
-sys.path.append(str(ROOT / "scripts"))
-
-from sweeping import grid, results  # noqa: E402  (found only now)
 
 CASE, SWEEP = ROOT / "scripts" / "case.py", ROOT / "scripts" / "sweep.py"
 COARSE = ["--fold-lines", "3", "--inner-width", "0.15"]

@@ -16,8 +16,7 @@ from membrane.mesh import sail_mesh
 from membrane.mesh.fold import fold
 from yade import wrapper as yade
 
-from reference import forces as paper
-
+from ..sources import paper
 from . import at_most, recorded
 
 YOUNG, POISSON, DENSITY, THICKNESS = 3.2e9, 0.34, 1420.0, 7.5e-6

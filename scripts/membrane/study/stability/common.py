@@ -3,7 +3,6 @@
 
 import csv
 import io
-from pathlib import Path
 
 import membrane as plugin
 import numpy as np
@@ -13,8 +12,9 @@ from membrane.files import replace_text
 from membrane.view import plots
 from yade import wrapper as yade
 
-ROOT = Path(__file__).resolve().parents[2]
-FULL, OTHER = ROOT / "reference" / "stability", ROOT / "build" / "stability"
+from ..sources import BUILD, REFERENCE
+
+FULL, OTHER = REFERENCE / "stability", BUILD / "stability"
 O = yade.Omega()  # noqa: E741, YADE's own name for it
 
 

@@ -22,13 +22,13 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 from membrane.view.plots import save
 
-from . import cases, results
+from ..sources import BUILD, REFERENCE, ROOT
+from . import cases
 from .sheet import SIDES
 from .turns import entry, take_turns
 
-BUILD = results.ROOT / "build"
 PROGRAM = BUILD / "roofline"
-PICTURE = results.ROOT / "reference" / "roofline.png"
+PICTURE = REFERENCE / "roofline.png"
 NAMES = {False: "springs", True: "all forces"}  # by `everything`, as in cases
 
 # Floating-point operations of one element and step, counted in the sources: each sum, difference,
@@ -146,7 +146,7 @@ def build():
     for tool, package in {"valgrind": "valgrind", "objdump": "binutils"}.items():
         if not shutil.which(tool):
             raise RuntimeError(f"there is no {tool}; on Debian 12: apt-get install {package}")
-    said(["cmake", "-S", results.ROOT, "-B", BUILD])
+    said(["cmake", "-S", ROOT, "-B", BUILD])
     said(["cmake", "--build", BUILD, "--target", PROGRAM.name])
 
 

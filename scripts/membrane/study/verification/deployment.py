@@ -16,9 +16,10 @@ from membrane.run import sail
 from membrane.view import plots
 from yade import wrapper as yade
 
-from . import ROOT, Check, at_most, recorded
+from ..sources import REFERENCE
+from . import Check, at_most, recorded
 
-PICTURE = ROOT / "reference" / "ensemble.png"
+PICTURE = REFERENCE / "ensemble.png"
 
 # Order in time: errors against a run at REFERENCE_STEP.
 ORDER_STEPS = (2.5e-6, 1.25e-6, 0.625e-6, 0.3125e-6)  # [s]; the fast mode takes the last two

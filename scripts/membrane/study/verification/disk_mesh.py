@@ -6,7 +6,7 @@ from math import gamma
 import numpy as np
 from membrane import geometry
 
-from reference import forces as paper
+from ..sources import paper
 
 MAP_STEPS = 400
 

@@ -8,9 +8,10 @@ import tempfile
 import time
 from pathlib import Path
 
+from ..sources import SCRIPTS
 from . import AT_MOST, FUSED, PATHS, Entry
 
-SCRIPT = Path(__file__).resolve().parents[1] / "deploy.py"
+SCRIPT = SCRIPTS / "deploy.py"
 MOST = 6.0  # [s], all together
 STAGES = {"build": "fold and build", "spin_up": "spin-up", "run": "run of 1 s"}
 

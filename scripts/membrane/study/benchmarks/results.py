@@ -6,9 +6,10 @@ import subprocess
 from pathlib import Path
 
 from membrane.files import read_object, write_json
-from membrane.text_table import aligned
+from membrane.study.text_table import aligned
 
-ROOT = Path(__file__).resolve().parents[2]
+from ..sources import ROOT
+
 MEANING = {
     "value": "median over the rounds, in which all that is compared takes turns",
     "spread": "least and largest over the rounds",

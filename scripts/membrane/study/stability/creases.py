@@ -34,11 +34,10 @@ from itertools import product
 import numpy as np
 from membrane import scene
 from membrane.parameters import SailParameters
-from verification.deployment import begin, equilibrium
+from membrane.study.verification.deployment import begin, equilibrium
 from yade import wrapper as yade
 
-from reference import forces as reference
-
+from ..sources import paper as reference
 from .common import (
     TWO_TRIANGLES,
     Model,

@@ -17,13 +17,14 @@ import numpy as np
 from matplotlib.figure import Figure
 from membrane.measures import lag_and_half_period
 from membrane.parameters import TABLE_2_CASES, SailParameters
+from membrane.study.sweep.pictures import draw_curves
 from membrane.view.plots import save
-from sweeping.pictures import draw_curves
 
-from . import ROOT, Check, at_most, recorded
+from ..sources import REFERENCE
+from . import Check, at_most, recorded
 from .deployment import DURATION, INTERVAL, deploy, ensemble, equilibrium, perturbed
 
-PICTURE = ROOT / "reference" / "table2.png"
+PICTURE = REFERENCE / "table2.png"
 ALPHA_CREASE, BETA = TABLE_2_CASES["alpha_crease"], TABLE_2_CASES["beta"]
 OTHER, OTHER_MEMBERS = (1000.0, 0.0), 3  # a second case whose spread is measured
 SPREADS = 2  # standard deviations of a change that count as none

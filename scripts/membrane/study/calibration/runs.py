@@ -16,7 +16,6 @@ from scipy.interpolate import CubicSpline
 
 from .kept_runs import KeptRuns, refuse_another
 
-DEPLOY = Path(__file__).resolve().parents[1] / "deploy.py"
 INTERVAL = 1e-3  # [s] between rows of a run's history
 
 
@@ -25,6 +24,8 @@ class Deployments:
 
     Parameters
     ----------
+    deploy : Path
+        Of scripts/deploy.py.
     names : sequence of str
         The d parameters that vary.
     target : Target
@@ -35,8 +36,9 @@ class Deployments:
         Called with (values of the parameters (d,), curves or None) after each run.
     """
 
-    def __init__(self, names, target, options=(), tell=lambda values, curves: None):
-        self.names, self.target, self.options, self.tell = names, target, list(options), tell
+    def __init__(self, deploy, names, target, options=(), tell=lambda values, curves: None):
+        self.deploy, self.options, self.tell = deploy, list(options), tell
+        self.names, self.target = names, target
         self.kept = None
         self.workers = len(os.sched_getaffinity(0))
         self._known = {}
@@ -93,7 +95,8 @@ class Deployments:
     def _deploy(self, values):
         with tempfile.TemporaryDirectory(prefix="calibration-") as folder:
             done = subprocess.run(
-                ["yade", "-n", "-x", "-j1", str(DEPLOY), *self.options, *self._own(values, folder)],
+                ["yade", "-n", "-x", "-j1", str(self.deploy)]
+                + [*self.options, *self._own(values, folder)],
                 capture_output=True,
                 encoding="utf-8",
                 errors="replace",

@@ -21,8 +21,7 @@ from membrane.mesh import sail_mesh
 from scipy import sparse
 from scipy.sparse.linalg import spsolve
 
-from reference import forces as paper
-
+from ..sources import paper
 from . import Check, at_most, recorded
 
 YOUNG, POISSON, THICKNESS = 3.2e9, 0.34, 7.5e-6

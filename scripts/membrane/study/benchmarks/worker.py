@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A process of YADE that builds one situation and measures it whenever it is asked.
 
-Started by `benchmarks.workers.Worker`, since YADE's threads are fixed at the start: takes a
+Started by `workers.Worker`, since YADE's threads are fixed at the start: takes a
 situation and its options as JSON, then numbers of steps, one a line, and answers each with a line
 of JSON.
 """
@@ -9,12 +9,9 @@ of JSON.
 import json
 import os
 import sys
-from pathlib import Path
 
-sys.path.append(str(Path(sys.argv[0]).resolve().parents[1]))  # YADE keeps __file__ for itself
-
-from benchmarks import situations  # noqa: E402  (found only now)
-from benchmarks.workers import MARK  # noqa: E402
+from membrane.study.benchmarks import situations
+from membrane.study.benchmarks.workers import MARK
 
 
 def say(content):

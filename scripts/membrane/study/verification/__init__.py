@@ -5,16 +5,10 @@ Each module has `checks(full)`, which returns a list of Check; without `full` on
 seconds. Run them by scripts/verify.py.
 """
 
-import sys
 from dataclasses import asdict, dataclass
 from math import isfinite
-from pathlib import Path
 
-from membrane.text_table import aligned
-
-ROOT = Path(__file__).resolve().parents[2]
-if str(ROOT) not in sys.path:
-    sys.path.append(str(ROOT))  # for `from reference import forces`
+from membrane.study.text_table import aligned
 
 TARGET, AT_MOST, MEASURED = "target", "at most", "measured"
 

@@ -5,6 +5,7 @@ import os
 import select
 import signal
 import subprocess
+import sys
 import time
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -20,7 +21,7 @@ from .grid import CASES, table
 BATCH = "batch"  # folder of the table and of what yade-batch and the jobs say
 FAMILY = "MEMBRANE_SWEEP"  # variable that tells processes of which folder's sweep they are
 ROUNDS = 3  # how often in one sweep a case is started that was stopped from outside
-SCRIPT = Path(__file__).resolve().parents[1] / "case.py"
+SCRIPT = Path(sys.argv[0]).resolve().with_name("case.py")  # beside that of the sweep
 LOOK = 0.5  # [s], between two looks at the cases
 
 
