@@ -22,10 +22,11 @@ from math import pi
 from pathlib import Path
 
 import numpy as np
-from membrane.commands import folder, plain_errors
+from membrane.cli.errors import plain_errors
+from membrane.cli.options import add_argument, folder
 from membrane.files import write_json
 from membrane.measures import energy_errors
-from membrane.parameters import SailParameters, add_argument
+from membrane.parameters import SailParameters
 from membrane.results.unfinished import new_results
 
 with plain_errors("ikaros"):

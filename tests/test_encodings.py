@@ -6,7 +6,7 @@ import os
 import subprocess
 import unittest
 
-from membrane.commands import file, folder
+from membrane.cli.options import file, folder
 from membrane.parameters import Refused
 from membrane.view import report
 from support import ROOT, CommandTest, scratch, yade_environment

@@ -1,39 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """How the commands of scripts/ end where something is wrong: one sentence and an exit status."""
 
-import os
 import signal
 import sys
 from contextlib import contextmanager, suppress
-from pathlib import Path
 
-from .parameters import Refused, check_name, whole
-from .progress import Terminated
+from ..progress import Terminated
 
 STOPPED, TERMINATED = 130, 143  # exit statuses after Ctrl-C and SIGTERM, as shells have them
 DEBIAN = {"vtkmodules": "vtk9"}  # packages whose names in Python and in Debian differ
-
-
-def folder(text):
-    """A Path from a word of the command line, which must not be empty."""
-    if not text:
-        raise Refused("must name a folder")
-    return file(text)
-
-
-def file(text):
-    """A Path from a word of the command line; Refused unless its name is UTF-8."""
-    path = Path(os.path.expanduser(text))
-    check_name(path)
-    return path
-
-
-def count(text):
-    """A whole number from a word of the command line, which must be at least 1."""
-    found = whole(text)
-    if found < 1:
-        raise Refused(f"{text}: must be at least 1")
-    return found
 
 
 @contextmanager

@@ -9,8 +9,8 @@ from numbers import Real
 from yade import utils
 from yade.wrapper import Omega
 
-from .files import shown
-from .parameters import SailParameters
+from ..files import shown
+from ..parameters import SailParameters
 
 
 def batch_row(**others):
