@@ -2,14 +2,12 @@
 """A membrane's bodies: its film, nodes and sides."""
 
 import numpy as np
+from yade import wrapper as yade
 
-from .. import _load
 from ..progress import stages
 
 LARGE = 100_000  # nodes: adding so many takes about a second, so that progress is shown
 ADDING = {"rest state": 2, "bodies": 2, "interactions": 6}  # stages and their shares of the time
-
-_plugin = _load.load()
 
 
 def film(young=3.2e9, poisson=0.34, density=1420.0, thickness=7.5e-6):
@@ -35,9 +33,7 @@ def film(young=3.2e9, poisson=0.34, density=1420.0, thickness=7.5e-6):
     ValueError
         If one is out of range.
     """
-    return _plugin["MembraneMat"](
-        young=young, poisson=poisson, density=density, thickness=thickness
-    )
+    return yade.MembraneMat(young=young, poisson=poisson, density=density, thickness=thickness)
 
 
 def add_membrane(
@@ -90,7 +86,7 @@ def add_membrane(
     places = nodes if positions is None else np.asarray(positions, dtype=float)
     with stages("building", ADDING, silent=len(nodes) < LARGE) as begin:
         begin("rest state")
-        membrane = _plugin["Membrane"](
+        membrane = yade.Membrane(
             material=material or film(),
             nodes=nodes,
             triangles=np.asarray(triangles, dtype=int),

@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 import numpy as np
 from yade import wrapper as yade
 
-from .. import _load
 from ..progress import warn
 from . import contacts, hub, spool
 
@@ -17,8 +16,6 @@ INTEGRATED = NODE_MASK - 1 - spool.SPOOL_MASK
 TOUCHING_MASK = NODE_MASK - 1  # of nodes that touch other bodies: they touch whatever has a mask
 
 LEDGER_PERIOD = 20  # at most so many steps between two looks at all energies
-
-_plugin = _load.load()
 
 
 @dataclass
@@ -165,7 +162,7 @@ def set_engines(
     fused = path == "fused"
     scene = yade.Omega()
     own = {"exchangePeriod": exchange_period} if fused else {}
-    forces = _plugin["MembraneIntegrator" if fused else "MembraneForceEngine"](
+    forces = getattr(yade, "MembraneIntegrator" if fused else "MembraneForceEngine")(
         membrane=membrane,
         beta=beta,
         gamma=gamma,
@@ -180,7 +177,7 @@ def set_engines(
     if touching or not fused:
         # Also where the sides are no interactions: should they become some, YADE would end for want
         # of it, before the forces engine can refuse them.
-        laws = [_plugin["Law2_MembraneGeom_MembranePhys_Buckling"]()]
+        laws = [yade.Law2_MembraneGeom_MembranePhys_Buckling()]
     others = []
     if len(scene.bodies) > len(membrane.bodyIds):
         others = sorted({body.id for body in scene.bodies}.difference(membrane.bodyIds))
@@ -192,8 +189,8 @@ def set_engines(
         for body in (scene.bodies[i] for i in membrane.bodyIds):
             if body.mask == NODE_MASK:  # a MembraneIntegrator had them
                 body.mask = 1
-        geometry = [_plugin["Ig2_MembraneNode_MembraneNode_MembraneGeom"]()]
-        physics = [_plugin["Ip2_MembraneMat_MembraneMat_MembranePhys"](membrane=membrane)]
+        geometry = [yade.Ig2_MembraneNode_MembraneNode_MembraneGeom()]
+        physics = [yade.Ip2_MembraneMat_MembraneMat_MembranePhys(membrane=membrane)]
     if not set(touching).issubset(membrane.bodyIds):
         stranger = min(set(touching).difference(membrane.bodyIds))
         raise ValueError(f"set_engines: touching: body #{stranger} is no node of the membrane")
@@ -205,17 +202,17 @@ def set_engines(
         for body in (scene.bodies[i] for i in touching):
             body.bounded, body.mask = True, TOUCHING_MASK
         collider = [contacts.collider(TOUCHING_MASK)]
-        node_pairs = _plugin["Ig2_MembraneNode_MembraneNode_MembraneGeom"]
-        geometry = [*contacts.geometry(), node_pairs()]
+        node_pairs = yade.Ig2_MembraneNode_MembraneNode_MembraneGeom()
+        geometry = [*contacts.geometry(), node_pairs]
         physics.append(yade.Ip2_FrictMat_FrictMat_FrictPhys())
         # A facet's torque must be that about its place: a FreeHub takes it.
         laws.append(yade.Law2_ScGeom_FrictPhys_CundallStrack(sphericalBodies=False))
     facets = [i for i in driven if isinstance(scene.bodies[i].shape, yade.Facet)]
-    turning = spool.turning(facets, touching, omega, _plugin["SpoolRotation"])
+    turning = spool.turning(facets, touching, omega)
     turned = sorted(set(driven).difference(facets))
     free_hub = []
     if hub_inertia is not None:
-        free_hub = [hub.add(_plugin["FreeHub"], forces, turned, turning, hub_inertia, omega)]
+        free_hub = [hub.add(forces, turned, turning, hub_inertia, omega)]
         turned = []  # the hub turns them
     rotation = yade.RotationEngine(
         ids=turned,
@@ -225,9 +222,9 @@ def set_engines(
         zeroPoint=(0, 0, 0),
         dead=not turned,
     )
-    centrifugal = _plugin["CentrifugalField"](membrane=membrane, omega=omega, dead=True)
+    centrifugal = yade.CentrifugalField(membrane=membrane, omega=omega, dead=True)
     newton = yade.NewtonIntegrator(damping=0, gravity=gravity, mask=INTEGRATED)
-    ledger = _plugin["MembraneLedger"](
+    ledger = yade.MembraneLedger(
         forces=forces, gravity=gravity, period=min(exchange_period, LEDGER_PERIOD) if fused else 1
     )
     # With no other body that moves, a fused membrane needs none of YADE's loops over bodies.
@@ -235,7 +232,7 @@ def set_engines(
     resetter = yade.ForceResetter(dead=newton.dead and not laws)
     watch = []
     if energy_tolerance is not None:
-        watch = [_plugin["MembraneWatch"](ledger=ledger, tolerance=energy_tolerance)]
+        watch = [yade.MembraneWatch(ledger=ledger, tolerance=energy_tolerance)]
     scene.engines = [
         resetter,
         turning,
@@ -249,19 +246,9 @@ def set_engines(
         ledger,
         *watch,
     ]
-    return MembraneScene(
-        membrane,
-        forces,
-        centrifugal,
-        rotation,
-        turning,
-        newton,
-        ledger,
-        watch[0] if watch else None,
-        resetter,
-        list(driven),
-        free_hub[0] if free_hub else None,
-    )
+    moving = membrane, forces, centrifugal, rotation, turning, newton, ledger
+    others = watch[0] if watch else None, resetter, list(driven), free_hub[0] if free_hub else None
+    return MembraneScene(*moving, *others)
 
 
 def renew_collider():
@@ -288,19 +275,11 @@ def loaded():
     rotation, turning = found["RotationEngine"], found["SpoolRotation"]
     free = found.get("FreeHub")
     on_hub = [forces.membrane.bodyIds[node] for node in free.nodes] if free else []
-    return MembraneScene(
-        forces.membrane,
-        forces,
-        found["CentrifugalField"],
-        rotation,
-        turning,
-        found["NewtonIntegrator"],
-        found["MembraneLedger"],
-        found.get("MembraneWatch"),
-        found["ForceResetter"],
-        [*turning.ids, *rotation.ids, *on_hub],
-        free,
-    )
+    newton, ledger = found["NewtonIntegrator"], found["MembraneLedger"]
+    moving = forces.membrane, forces, found["CentrifugalField"], rotation, turning, newton, ledger
+    driven = [*turning.ids, *rotation.ids, *on_hub]
+    others = found.get("MembraneWatch"), found["ForceResetter"], driven, free
+    return MembraneScene(*moving, *others)
 
 
 def sort_interactions():

@@ -5,13 +5,11 @@ import numpy as np
 from yade import wrapper as yade
 
 
-def add(kind, forces, bodies, spool, inertia, omega):
+def add(forces, bodies, spool, inertia, omega):
     """Engine of a free hub.
 
     Parameters
     ----------
-    kind : class
-        FreeHub.
     forces : MembraneForceEngine
     bodies : sequence of int
         Ids of the membrane's bodies that turn with the hub.
@@ -29,7 +27,7 @@ def add(kind, forces, bodies, spool, inertia, omega):
     node = {body: i for i, body in enumerate(forces.membrane.bodyIds)}
     nodes = [node[body] for body in bodies]
     facets = {"spool": spool} if spool.ids else {}
-    return kind(forces=forces, nodes=nodes, inertia=inertia, spin=omega, **facets)
+    return yade.FreeHub(forces=forces, nodes=nodes, inertia=inertia, spin=omega, **facets)
 
 
 def inertia(sail, positions):

@@ -4,10 +4,7 @@
 import numpy as np
 from yade import wrapper as yade
 
-from .. import _load
 from . import hub
-
-_plugin = _load.load()
 
 
 def advance(steps, resumed=None):
@@ -23,10 +20,10 @@ def advance(steps, resumed=None):
         if resumed and steps > 0:
             _first_step(resumed)
             steps -= 1
-        _plugin["MembraneForceEngine"].advance(steps)
+        yade.MembraneForceEngine.advance(steps)
     except BaseException:
         for engine in scene.engines:
-            if isinstance(engine, _plugin["MembraneForceEngine"]):
+            if isinstance(engine, yade.MembraneForceEngine):
                 engine.writeBack()
         raise
     finally:
@@ -49,16 +46,11 @@ def compute_forces(sail):
     It takes a step of YADE in which neither integrator, rotation nor ledger takes part, nor any
     other membrane.
     """
-    kinds = (
-        yade.NewtonIntegrator,
-        yade.KinematicEngine,
-        _plugin["SpoolRotation"],
-        _plugin["FreeHub"],
-        _plugin["MembraneLedger"],
-    )
+    kinds = yade.NewtonIntegrator, yade.KinematicEngine, yade.SpoolRotation, yade.FreeHub
+    kinds += (yade.MembraneLedger,)
     movers = []
     for engine in yade.Omega().engines:
-        forces = isinstance(engine, _plugin["MembraneForceEngine"])
+        forces = isinstance(engine, yade.MembraneForceEngine)
         other = forces and engine.membrane.bodyIds != sail.membrane.bodyIds
         if other or isinstance(engine, kinds):
             movers.append(engine)

@@ -4,14 +4,14 @@
 from math import cos, hypot, pi, sin
 
 from yade import utils
-from yade.wrapper import FrictMat, Omega
+from yade.wrapper import FrictMat, Omega, SpoolRotation
 
 SPOOL_MASK = 1 << 28  # of the facets, which SpoolRotation moves: NewtonIntegrator leaves them alone
 COLOUR = (0.45, 0.48, 0.55)  # else YADE draws one by lot
 VERLET_DISTANCE = 2e-3  # of the collider [m]
 
 
-def turning(facets, touching, omega, rotation):
+def turning(facets, touching, omega):
     """Engine that turns the spool.
 
     Parameters
@@ -20,8 +20,6 @@ def turning(facets, touching, omega, rotation):
         Ids of the spool's facets and of the bodies that may touch it.
     omega : float
         About +z [rad/s].
-    rotation : class
-        SpoolRotation.
 
     Returns
     -------
@@ -32,7 +30,7 @@ def turning(facets, touching, omega, rotation):
     corners = [bodies[i].state.pos + v for i in facets for v in bodies[i].shape.vertices]
     radius = max((hypot(c[0], c[1]) for c in corners), default=0.0)
     thickest = max((bodies[i].shape.radius for i in touching), default=0.0)
-    return rotation(
+    return SpoolRotation(
         ids=list(facets),
         touching=list(touching),
         angularVelocity=omega,

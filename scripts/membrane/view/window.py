@@ -12,10 +12,6 @@ import numpy as np
 from yade import runtime
 from yade import wrapper as yade
 
-from .. import _load
-
-_plugin = _load.load()
-
 PATIENCE = 60.0  # s, for a window or a picture that never comes
 
 
@@ -53,9 +49,9 @@ def show(membrane=None, *, direction=(0.35, 0.55, -0.75), size=(900, 700), **att
     require_display()
     from yade import qt
 
-    drawer = _plugin["GlExtra_Membrane"](membrane=membrane, **attributes)
+    drawer = yade.GlExtra_Membrane(membrane=membrane, **attributes)
     renderer = qt.Renderer()
-    others = [d for d in renderer.extraDrawers if not isinstance(d, _plugin["GlExtra_Membrane"])]
+    others = [d for d in renderer.extraDrawers if not isinstance(d, yade.GlExtra_Membrane)]
     renderer.extraDrawers = [*others, drawer]
     view = qt.views()[0] if qt.views() else qt.View(PATIENCE)
     view.screenSize = size
@@ -181,8 +177,8 @@ class Watch:
 
 def _membranes():
     """The membranes that have a MembraneForceEngine in the scene."""
-    forces = _plugin["MembraneForceEngine"]
-    return [e.membrane for e in yade.Omega().engines if isinstance(e, forces) and e.membrane]
+    engines = (e for e in yade.Omega().engines if isinstance(e, yade.MembraneForceEngine))
+    return [e.membrane for e in engines if e.membrane]
 
 
 def _extent(membranes):
