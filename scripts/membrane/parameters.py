@@ -349,8 +349,3 @@ def from_values(path, values, kind=SailParameters):
         return kind(**values)
     except ValueError as error:
         raise BadFile(path, "", str(error)) from None
-
-
-def read_parameters(path, kind=SailParameters):
-    """Parameters from a JSON file, see read_values; those it does not name have their defaults."""
-    return kind(**read_values(path, kind))

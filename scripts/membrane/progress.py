@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Progress of long work on the terminal: percentage, simulated time, speed, time left; stages.
-
-And how such work hears of an end from outside.
-"""
+"""Progress of long work on the terminal: percentage, simulated time, speed, time left; stages."""
 
 import sys
 import time

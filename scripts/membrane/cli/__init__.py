@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The commands of scripts/, a module each; their options, the batch's table, their errors."""
+"""The commands of scripts/, a module each; their options, the batch's table, their errors.
+
+Run them by `scripts/run.sh NAME [options]`, or by `yade -n -x scripts/NAME.py [options]`.
+"""
 
 import importlib
 import sys

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Measures the speed of the plugin and writes reference/bench.json.
 
-Run it by `scripts/run.sh bench [options]`, or by `yade -n -x scripts/bench.py [options]`. All
-that is compared is measured turn by turn in one run: on one thread in processor time, on several
-in wall time, while the machine does nothing else. Targets are reported, not asserted: the exit
-status is 0 whenever the measurements were possible.
+All that is compared is measured turn by turn in one run: on one thread in processor time, on
+several in wall time, while the machine does nothing else. Targets are reported, not asserted: the
+exit status is 0 whenever the measurements were possible.
 """
 
 import argparse
@@ -18,7 +17,7 @@ from ..study import benchmarks
 from ..study.benchmarks import lammps, results
 from ..study.benchmarks.quiet import Quiet
 from ..study.sources import REFERENCE
-from .options import count
+from .options import add_only, count
 
 MODULES = {
     "loops": "functors and engine of path law2 beside YADE's own sphere contact",
@@ -38,14 +37,7 @@ def command_line():
     parser = argparse.ArgumentParser(
         prog="bench", description=__doc__.splitlines()[0], epilog=about
     )
-    parser.add_argument(
-        "--only",
-        nargs="+",
-        choices=MODULES,
-        metavar="MODULE",
-        default=list(MODULES),
-        help="run only these; the others keep their results in the file",
-    )
+    add_only(parser, MODULES, "run only these; the others keep their results in the file")
     parser.add_argument(
         "--no-deployment", action="store_true", help="leave out the paper's deployment"
     )
@@ -60,10 +52,7 @@ def command_line():
     parser.add_argument(
         "--quick", action="store_true", help="small sizes and short turns; write no file"
     )
-    arguments = parser.parse_args()
-    if arguments.rounds < 1:
-        parser.error(f"--rounds {arguments.rounds}: must be at least 1")
-    return arguments
+    return parser.parse_args()
 
 
 def made_with():

@@ -28,7 +28,7 @@ from ..study.calibration.runs import Deployments
 from ..study.calibration.search import misfit, search
 from ..study.calibration.surface import HALF, at_bound, refine
 from ..study.calibration.target import read_target
-from .options import file, folder
+from .options import add_out, file
 
 BOUNDS = {"alpha_crease": (10.0, 1000.0), "beta": (1.0, 100.0)}
 DEPLOY = Path(sys.argv[0]).resolve().with_name("deploy.py")
@@ -70,13 +70,7 @@ def command_line():
         help=f"end of the part of the curve that counts [s]; from about {CHAOS:g} s on tiny "
         "differences grow, and single curves say little (default 0.1)",
     )
-    parser.add_argument(
-        "--out",
-        type=folder,
-        default=Path("out/calibration"),
-        metavar="DIR",
-        help="default: out/calibration",
-    )
+    add_out(parser, "out/calibration")
     parser.add_argument(
         "--seed",
         type=whole,

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """One case of the paper's scene, whole or not at all, as part of a sweep or alone.
 
-Run it by `scripts/run.sh case --out DIR [options]`, or by `yade -n -x scripts/case.py --out DIR
-[options]`, again if it was killed: it goes on from its last checkpoint. In a batch of yade-batch
-the options are columns of the table. Exits with 0 for a case that is complete or has diverged.
+Run again after it was killed it goes on from its last checkpoint. In a batch of yade-batch the
+options are columns of the table. Exits with 0 for a case that is complete or has diverged.
 """
 
 import argparse
@@ -11,7 +10,7 @@ import argparse
 from ..results.case_folder import COMPLETE
 from ..run.case import run_case
 from .batch import batch_row
-from .options import folder, from_arguments, parse
+from .options import add_out, folder, from_arguments, parse
 
 
 def command_line():
@@ -19,9 +18,7 @@ def command_line():
     parser = argparse.ArgumentParser(
         prog="case", description="Deploy the paper's solar sail; leave all results or none."
     )
-    parser.add_argument(
-        "--out", type=folder, metavar="DIR", help="folder of the case; it appears at the end"
-    )
+    add_out(parser, text="folder of the case; it appears at the end")
     parser.add_argument(
         "--no-pictures", action="store_true", help="draw no pictures and write no report.html"
     )

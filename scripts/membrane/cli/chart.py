@@ -3,7 +3,7 @@
 
 Three questions, each with its error and its processor time on one thread: the early deployment
 curve against the finest mesh, the spinning disk's frequencies against the closed form, and the
-energy ledger. Run it by `scripts/run.sh chart [options]`. Writes reference/chart.csv and chart.png.
+energy ledger. Writes reference/chart.csv and chart.png.
 """
 
 import argparse
@@ -21,7 +21,7 @@ from ..study.sources import REFERENCE
 from ..study.verification import deployment, spinning
 from ..study.verification.chart_picture import TITLES, draw
 from ..study.verification.variant import Variant
-from .options import count, folder
+from .options import add_out, count
 
 DURATION, INTERVAL = 0.1, 1e-3  # of the deployments [s]; single curves can be compared so long
 FINEST = {"refine": 4, "dt": 1.25e-6}
@@ -180,13 +180,7 @@ def main():
         "--steps", type=count, default=4000, help="steps of each, at refine = 1 (default 4000)"
     )
     parser.add_argument("--quick", action="store_true", help="a small grid")
-    parser.add_argument(
-        "--out",
-        type=folder,
-        default=REFERENCE,
-        metavar="DIR",
-        help="folder of chart.csv and chart.png (default: reference)",
-    )
+    add_out(parser, REFERENCE, "folder of chart.csv and chart.png (default: reference)")
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)
     tell = announcer("chart")

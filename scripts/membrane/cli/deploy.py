@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The paper's scene: the small-scale sail is folded, spun up, released and deploys.
 
-Run it by `scripts/run.sh deploy [options]`, or by `yade -n -x scripts/deploy.py [options]`, or
-many times by `yade-batch table.txt scripts/deploy.py` with parameters as the table's columns.
+Many times by `yade-batch table.txt scripts/deploy.py` with parameters as the table's columns.
 """
 
 import argparse
@@ -13,7 +12,7 @@ from ..results.unfinished import new_results
 from ..run import sail
 from ..view import report, window
 from .batch import batch_row, folder_of
-from .options import folder, from_arguments, parse
+from .options import add_out, from_arguments, parse
 
 
 def command_line():
@@ -21,12 +20,7 @@ def command_line():
     parser = argparse.ArgumentParser(
         prog="deploy", description="Fold, spin up and deploy the paper's solar sail."
     )
-    parser.add_argument(
-        "--out",
-        type=folder,
-        metavar="DIR",
-        help="output folder (default: out; in a batch out/CASE)",
-    )
+    add_out(parser, text="output folder (default: out; in a batch out/CASE)")
     parser.add_argument("--no-pictures", action="store_true", help="draw no pictures")
     parser.add_argument("--no-report", action="store_true", help="write no report.html")
     parser.add_argument(

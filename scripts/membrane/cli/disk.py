@@ -3,11 +3,10 @@
 
 A free disk of radius 1 m spins at 10 rad/s and is kicked out of its plane. Frequencies of three
 modes on finer and finer meshes against the closed form: the error falls with the square of the
-cells. Run it by `scripts/run.sh disk [options]`; the picture is disk.png.
+cells. The picture is disk.png.
 """
 
 import argparse
-from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -17,7 +16,7 @@ from .. import scene
 from ..study.verification.disk_mesh import disk_mesh
 from ..study.verification.spinning import OMEGA, disk_frequency, frequencies2, spin, spinning_net
 from ..view import plots
-from .options import folder
+from .options import add_out
 
 CELLS = (4, 8, 16)  # from the centre to the edge
 POISSON = 1 / 3  # that of a net of equilateral triangles, whatever the film's
@@ -82,13 +81,7 @@ def order(error):
 def main():
     """Vibrate the disks, tell the errors and draw."""
     parser = argparse.ArgumentParser(prog="disk", description=__doc__.splitlines()[0])
-    parser.add_argument(
-        "--out",
-        type=folder,
-        default=Path("out/disk"),
-        metavar="DIR",
-        help="folder of disk.png (default: out/disk)",
-    )
+    add_out(parser, "out/disk", "folder of disk.png (default: {})")
     out = parser.parse_args().out
     out.mkdir(parents=True, exist_ok=True)
     runs = [vibrate(cells) for cells in CELLS]

@@ -2,7 +2,7 @@
 """A Miura-ori sheet, read from a FOLD file, spins and is unfolded by masses at its corners.
 
 The sheet flies free in thin air, as in the paper's chamber: it keeps its angular momentum but for
-the drag, and turns the slower the wider it is open. Run it by `scripts/run.sh miura [options]`.
+the drag, and turns the slower the wider it is open.
 """
 
 import argparse
@@ -13,7 +13,7 @@ from ..parameters import PatternParameters
 from ..results.unfinished import new_results
 from ..run import pattern_sail
 from ..view.report import PAGE
-from .options import folder
+from .options import add_out
 
 PATTERN = Path(sys.argv[0]).resolve().parent / "patterns" / "miura.fold"
 INSTANTS = (0.0, 0.015, 0.03, 0.05, 0.1, 1.0)  # s
@@ -36,9 +36,7 @@ def parameters(duration):
 def main():
     """Unfold the sheet; sys.exit with one sentence if that cannot be."""
     parser = argparse.ArgumentParser(prog="miura", description=__doc__.splitlines()[0])
-    parser.add_argument(
-        "--out", type=folder, default=Path("out/miura"), metavar="DIR", help="default: out/miura"
-    )
+    add_out(parser, "out/miura")
     parser.add_argument("--duration", type=float, default=1.0, metavar="s", help="[s] (default 1)")
     arguments = parser.parse_args()
     chosen = parameters(arguments.duration)

@@ -31,6 +31,18 @@ def count(text):
     return found
 
 
+def add_out(parser, default=None, text="default: {}"):
+    """Add the option --out, a folder; its help is `text` with the default."""
+    text, default = text.format(default), default and Path(default)
+    parser.add_argument("--out", type=folder, default=default, metavar="DIR", help=text)
+
+
+def add_only(parser, names, text, word="MODULE"):
+    """Add the option --only for some of `names`; all by default."""
+    about = {"choices": names, "default": list(names), "metavar": word, "help": text}
+    parser.add_argument("--only", nargs="+", **about)
+
+
 def add_arguments(parser, kind=SailParameters, several=None, defaults=None):
     """Add one option for every parameter to an argparse parser, grouped by source.
 

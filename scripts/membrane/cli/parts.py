@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Leaves out each part of the model in turn: what it changes in the answer, and what time it costs.
 
-Run it by `scripts/run.sh parts [options]`, or by `yade -n -x scripts/parts.py [options]`. Writes
-reference/parts.csv and prints advice.
+Writes reference/parts.csv and prints advice.
 """
 
 import argparse

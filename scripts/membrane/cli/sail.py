@@ -1,18 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Any sheet as a spinning sail: a crease pattern in a FOLD file, or a mesh of gmsh.
-
-Run it by `scripts/run.sh sail PATTERN.fold|MESH.msh [options]`.
-"""
+"""Any sheet as a spinning sail: a crease pattern in a FOLD file, or a mesh of gmsh."""
 
 import argparse
-from pathlib import Path
 
 from ..mesh.sheet_words import described
 from ..parameters import PatternParameters
 from ..results.unfinished import new_results
 from ..run import pattern_sail
 from ..view.report import PAGE
-from .options import file, folder, from_arguments, parse
+from .options import add_out, file, from_arguments, parse
 
 
 def command_line():
@@ -21,9 +17,7 @@ def command_line():
         prog="sail", description="Spin a sail made from a crease pattern or a mesh."
     )
     parser.add_argument("file", type=file, help="crease pattern (.fold) or mesh of gmsh (.msh)")
-    parser.add_argument(
-        "--out", type=folder, default=Path("out"), metavar="DIR", help="default: out"
-    )
+    add_out(parser, "out")
     parser.add_argument("--no-pictures", action="store_true", help="draw no pictures")
     parser.add_argument("--no-report", action="store_true", help="write no report.html")
     return parse(parser, PatternParameters)

@@ -9,6 +9,8 @@ import argparse
 import importlib
 import time
 
+from .options import add_only
+
 TOPICS = {
     "timestep": "estimate of the critical time step against the measured limit",
     "negative_stiffness": "sheets with flat triangles",
@@ -24,9 +26,7 @@ def command_line():
     """Parsed sys.argv."""
     topics = "; ".join(f"{name}: {text}" for name, text in TOPICS.items())
     parser = argparse.ArgumentParser(prog="stability", description=__doc__, epilog=topics)
-    parser.add_argument(
-        "--only", nargs="+", choices=TOPICS, metavar="TOPIC", default=list(TOPICS), help="topics"
-    )
+    add_only(parser, TOPICS, "topics", "TOPIC")
     parser.add_argument(
         "--quick", action="store_true", help="thin scans, written into build/stability/ instead"
     )

@@ -9,13 +9,12 @@ scripts/case.py leaves them; it needs no YADE.
 import argparse
 import os
 import sys
-from pathlib import Path
 
 from ..parameters import TABLE_2_CASES, TABLE_2_DURATION, SailParameters
 from ..results.case_folder import COMPLETE, DAMAGED, DIVERGED
 from ..study.sweep import batch, grid
 from ..study.sweep.report import report
-from .options import count, folder, from_arguments, parse
+from .options import add_out, count, folder, from_arguments, parse
 
 
 def command_line():
@@ -23,9 +22,7 @@ def command_line():
     parser = argparse.ArgumentParser(prog="sweep", description=__doc__.splitlines()[0])
     commands = parser.add_subparsers(dest="command", required=True)
     run = commands.add_parser("run", help="run what is missing, and report")
-    run.add_argument(
-        "--out", type=folder, default=Path("out/sweep"), metavar="DIR", help="default: out/sweep"
-    )
+    add_out(run, "out/sweep")
     run.add_argument(
         "-j",
         "--jobs",

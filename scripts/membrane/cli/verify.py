@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Runs the verification suite and writes reference/verification.json.
 
-Run it by `scripts/run.sh verify [options]`, or by `yade -n -x scripts/verify.py [options]`. Exits
-with 1 if a check does not hold.
+Exits with 1 if a check does not hold.
 """
 
 import argparse
@@ -15,6 +14,7 @@ from ..files import write_json
 from ..run.sail import versions
 from ..study.sources import REFERENCE
 from ..study.verification import table
+from .options import add_only
 
 MODULES = ["forces", "sheets", "spinning", "deployment", "paper"]
 RESULTS = REFERENCE / "verification.json"
@@ -23,14 +23,8 @@ RESULTS = REFERENCE / "verification.json"
 def command_line():
     """Parsed sys.argv."""
     parser = argparse.ArgumentParser(prog="verify", description="Run the verification suite.")
-    parser.add_argument(
-        "--only",
-        nargs="+",
-        choices=MODULES,
-        metavar="MODULE",
-        default=MODULES,
-        help=f"run only these of {', '.join(MODULES)}; the others keep their results in the file",
-    )
+    text = f"run only these of {', '.join(MODULES)}; the others keep their results in the file"
+    add_only(parser, MODULES, text)
     parser.add_argument(
         "--quick",
         "--fast",

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Starts the Snakemake workflow, unless a file of configuration is missing or cannot be used.
 
-Run it by `scripts/run.sh workflow [options of snakemake]`. Snakemake itself would end by a
-traceback, and after kill -9 want its lock to be removed by hand.
+Snakemake itself would end by a traceback, and after kill -9 want its lock to be removed by hand.
 """
 
 import argparse

@@ -8,17 +8,10 @@ import sys
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 
-
-def _root():
-    """Their folder, above this file or the command that runs."""
-    for start in (__file__, sys.argv[0]):
-        for folder in Path(start).resolve().parents:
-            if (folder / "reference" / "forces.py").is_file():
-                return folder
+_above = [p for start in (__file__, sys.argv[0]) for p in Path(start).resolve().parents]
+ROOT = next((folder for folder in _above if (folder / "reference" / "forces.py").is_file()), None)
+if ROOT is None:
     raise ImportError("membrane.study: this needs the sources of the plugin, which are not here")
-
-
-ROOT = _root()
 REFERENCE, BUILD, SCRIPTS = (ROOT / name for name in ("reference", "build", "scripts"))
 
 _found = spec_from_file_location("reference.forces", REFERENCE / "forces.py")

@@ -20,17 +20,9 @@ from vtkmodules.vtkCommonCore import vtkPoints, vtkUnsignedCharArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkCommonTransforms import vtkTransform
 from vtkmodules.vtkFiltersSources import vtkCubeSource, vtkCylinderSource, vtkSphereSource
-from vtkmodules.vtkRenderingCore import (
-    vtkActor,
-    vtkActor2D,
-    vtkLight,
-    vtkPolyDataMapper,
-    vtkPolyDataMapper2D,
-    vtkProperty,
-    vtkRenderer,
-    vtkRenderWindow,
-    vtkTextActor,
-)
+from vtkmodules.vtkRenderingCore import vtkActor, vtkActor2D, vtkLight, vtkPolyDataMapper
+from vtkmodules.vtkRenderingCore import vtkPolyDataMapper2D, vtkProperty, vtkRenderer
+from vtkmodules.vtkRenderingCore import vtkRenderWindow, vtkTextActor
 
 from ..files import replacing
 from ..results import own

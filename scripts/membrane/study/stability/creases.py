@@ -38,17 +38,8 @@ from membrane.study.verification.deployment import begin, equilibrium
 from yade import wrapper as yade
 
 from ..sources import paper as reference
-from .common import (
-    TWO_TRIANGLES,
-    Model,
-    O,
-    figure,
-    folder,
-    kinetic,
-    save,
-    two_triangles,
-    write_table,
-)
+from .common import TWO_TRIANGLES, Model, O, figure, folder, kinetic, save, two_triangles
+from .common import write_table
 
 YOUNG, THICKNESS, DENSITY = 3.2e9, 7.5e-6, 1420.0
 GAMMA, LENGTH = 100.0, 0.02

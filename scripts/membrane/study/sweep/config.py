@@ -10,15 +10,8 @@ from pathlib import Path
 
 import yaml
 from membrane.files import BadFile, GivenTwice, one_of_each, read_text, shown
-from membrane.parameters import (
-    PARSERS,
-    TABLE_2_CASES,
-    TABLE_2_DURATION,
-    SailParameters,
-    check_name,
-    read_values,
-    whole,
-)
+from membrane.parameters import PARSERS, TABLE_2_CASES, TABLE_2_DURATION, SailParameters, check_name
+from membrane.parameters import read_values, whole
 
 from .grid import case_name, refuse_other_results
 
