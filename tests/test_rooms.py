@@ -7,7 +7,6 @@ import importlib
 import re
 import subprocess
 import unittest
-from pathlib import Path
 
 import membrane
 from membrane import _former
@@ -15,7 +14,9 @@ from support import ROOT, scratch, yade_environment
 
 SCRIPTS = ROOT / "scripts"
 ROOMS = ("", "mesh", "scene", "results", "view", "run", "study", "cli")  # the first: the ground
-WITH_YADE = "scene|run|view.window|study.(benchmarks|stability|verification)|cli.(?!errors|options|calibrate|sweep|workflow)"
+PLAIN_COMMANDS = "errors|options|calibrate|sweep|workflow"
+WITH_YADE = "scene|run|view.window|study.(benchmarks|sources|stability|verification)"
+WITH_YADE += f"|cli.(?!{PLAIN_COMMANDS})"  # or with the sources
 
 
 def modules(folder):

@@ -4,8 +4,12 @@
 ``import membrane`` in any script run by ``yade`` loads the plugin and gives its classes
 (`Membrane`, `MembraneMat`, `MembraneForceEngine`, …), which also appear in ``yade.wrapper``.
 Without YADE the package can be imported, too: only who asks for a class is refused.
-The building blocks of scenes are modules of this package: `mesh`, `fold`, `spool`, `scene`,
-`measures`, `output`, `plots`, `report`, `animation`.
+
+Its rooms, each of which imports only from those before it (tests/test_rooms.py):
+the ground, modules beside this one, where errors and progress are known to all;
+`mesh` the sail's and others', folds, patterns, files of meshes; no YADE;
+`scene` bodies, engines, motion; `results` what runs leave; `view` pictures, page, film, window;
+`run` sails that run; `study` many runs; `cli` the commands of scripts/.
 """
 
 import sys
