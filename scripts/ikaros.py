@@ -22,17 +22,20 @@ from math import pi
 from pathlib import Path
 
 import numpy as np
-from membrane.commands import folder, plain_errors
+from membrane.cli.errors import plain_errors
+from membrane.cli.options import add_argument, folder
 from membrane.files import write_json
 from membrane.measures import energy_errors
-from membrane.parameters import SailParameters, add_argument
-from membrane.unfinished import new_results
+from membrane.parameters import SailParameters
+from membrane.results.unfinished import new_results
 
 with plain_errors("ikaros"):
     from matplotlib.figure import Figure
-    from membrane import hub, plots, sail
-    from membrane.record import Recorder
-    from membrane.report import PAGE
+    from membrane.run import sail
+    from membrane.run.record import Recorder
+    from membrane.scene import hub
+    from membrane.view import plots
+    from membrane.view.report import PAGE
     from yade.wrapper import Omega
 
 RPM = 2 * pi / 60

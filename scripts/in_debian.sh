@@ -67,8 +67,8 @@ copy_sources() {
         [[ -n ${kept[$name]-} ]] || rm "$sources/$name" # it went here
     done < <(files_in "$sources")
     # The viewer is the same everywhere, and npm is large.
-    local viewer=build/python/membrane/viewer.html
-    if [[ -e $source/$viewer && -z $(find "$source/scripts/membrane/viewer" -newer "$source/$viewer" -print -quit) ]]; then
+    local viewer=build/python/membrane/view/viewer.html
+    if [[ -e $source/$viewer && -z $(find "$source/scripts/membrane/view/viewer" -newer "$source/$viewer" -print -quit) ]]; then
         mkdir -p "$sources/${viewer%/*}"
         cp "$source/$viewer" "$sources/$viewer"
     fi

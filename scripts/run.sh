@@ -202,7 +202,7 @@ compile() {
 # fetches cannot be had, and with 2 where that cannot be bundled.
 bundle_viewer() (
     [[ -z $installed ]] || exit 0
-    source=$root/scripts/membrane/viewer target=$build/python/membrane/viewer.html work=$build/viewer
+    source=$root/scripts/membrane/view/viewer target=$build/python/membrane/view/viewer.html work=$build/viewer
     [[ ! -e $target || -n $(find "$source" -newer "$target" -print -quit) ]] || exit 0
     command -v npm >/dev/null || (need nodejs npm) || exit 1
     mkdir -p "$work" "${target%/*}"

@@ -1,54 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Measures where the method becomes unstable, and writes tables and pictures into
-reference/stability/.
+reference/stability/."""
 
-Run it by `scripts/run.sh stability [options]`, or by `yade -n -x scripts/stability.py [options]`.
-"""
+from membrane.cli import run
 
-import argparse
-import importlib
-import sys
-import time
-from pathlib import Path
-
-from membrane.commands import plain_errors
-
-SCRIPTS = Path(sys.argv[0]).resolve().parent  # YADE keeps __file__ for itself
-sys.path.append(str(SCRIPTS))
-
-TOPICS = {
-    "timestep": "estimate of the critical time step against the measured limit",
-    "negative_stiffness": "sheets with flat triangles",
-    "creases": "lengths in (7), both laws, angular momentum, closed and flat angles",
-    "drag": "air drag in dense air",
-    "buckling": "alpha, snapping tethers, all sides buckled",
-    "drift": "energy drift over seconds, coarse against fine steps",
-    "beyond": "what happens above the limit, and how soon a run is stopped",
-}
-
-
-def command_line():
-    """Parsed sys.argv."""
-    topics = "; ".join(f"{name}: {text}" for name, text in TOPICS.items())
-    parser = argparse.ArgumentParser(prog="stability", description=__doc__, epilog=topics)
-    parser.add_argument(
-        "--only", nargs="+", choices=TOPICS, metavar="TOPIC", default=list(TOPICS), help="topics"
-    )
-    parser.add_argument(
-        "--quick", action="store_true", help="thin scans, written into build/stability/ instead"
-    )
-    return parser.parse_args()
-
-
-def main():
-    """Run the topics in turn."""
-    arguments = command_line()
-    for name in arguments.only:
-        start = time.monotonic()
-        line = importlib.import_module(f"stability_maps.{name}").run(arguments.quick)
-        print(f"{name}: {line} ({time.monotonic() - start:.0f} s)", flush=True)
-    return 0
-
-
-with plain_errors("stability"):
-    sys.exit(main())
+run("stability")

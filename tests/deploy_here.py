@@ -15,8 +15,9 @@ folder = Path(sys.argv[1])
 own = hasattr(wrapper, "Membrane")  # YADE's own, before anything of ours is imported
 with patch.object(config, "version", "of tomorrow" if own else config.version):
     import membrane
-    from membrane import _load, sail
+    from membrane import _load
     from membrane.parameters import SailParameters
+    from membrane.run import sail
 
 facts = {
     "package": membrane.__file__,

@@ -12,10 +12,12 @@ from pathlib import Path
 sys.path.insert(0, str(Path(sys.argv[0]).resolve().parent))
 
 import numpy as np  # noqa: E402
-from membrane import sail, scene, window  # noqa: E402
-from membrane.fold import fold  # noqa: E402
+from membrane import scene  # noqa: E402
 from membrane.mesh import sail_mesh  # noqa: E402
+from membrane.mesh.fold import fold  # noqa: E402
 from membrane.parameters import SailParameters  # noqa: E402
+from membrane.run import sail  # noqa: E402
+from membrane.view import window  # noqa: E402
 from support import O, grid, node_states, quiet  # noqa: E402
 
 RANGE = 1e-3  # strain at the end of the scale

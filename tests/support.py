@@ -14,10 +14,12 @@ from pathlib import Path
 
 import membrane
 import numpy as np
-from membrane import pattern_sail, sail, scene, spool
+from membrane import scene
 from membrane.mesh import sail_mesh
-from membrane.output import read_history
-from membrane.parameters import SailParameters
+from membrane.parameters import PatternParameters, SailParameters
+from membrane.results.output import read_history
+from membrane.run import pattern_sail, sail
+from membrane.scene import spool
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 from yade import config
@@ -302,7 +304,7 @@ def pattern_run():
     """Output folder of a Miura-ori sheet that flies free for 20 ms, with 5 shapes."""
     O.reset()
     folder = scratch() / "pattern_run"
-    p = pattern_sail.PatternParameters(
+    p = PatternParameters(
         size=0.0375, omega=60.0, duration=0.02, shapes_interval=5e-3, crease_law="conservative"
     )
     sheet = pattern_sail.read_sheet(ROOT / "scripts" / "patterns" / "miura.fold", p)

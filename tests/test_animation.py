@@ -13,11 +13,11 @@ from dataclasses import replace
 from unittest import mock
 
 import numpy as np
-from membrane import animation
 from membrane.files import TEMPORARY
-from membrane.finished_run import read_run
 from membrane.mesh import sail_mesh
-from membrane.output import VtkSeries, list_series, read_frame
+from membrane.results.finished_run import read_run
+from membrane.results.output import VtkSeries, list_series, read_frame
+from membrane.view import animation
 from support import ROOT, CommandTest, pattern_run, scratch, short_run, yade_environment
 
 MISSING = [program for program in ("Xvfb", "ffmpeg") if not shutil.which(program)]

@@ -8,7 +8,7 @@ import membrane
 import numpy as np
 from membrane import scene
 from membrane.parameters import SailParameters
-from membrane.sail import deploy
+from membrane.run.sail import deploy
 from support import O, SceneTest, Sheet, grid, quiet, scratch
 from yade import utils
 from yade import wrapper as yade

@@ -4,22 +4,15 @@
 Nothing here measures a speed, and LAMMPS need not be installed.
 """
 
-import importlib
 import json
-import sys
 import time
 import unittest
 from unittest import mock
 
 import numpy as np
-from support import ROOT, scratch
-
-sys.path.append(str(ROOT / "scripts"))
-benchmarks = importlib.import_module("benchmarks")
-cases, lammps, quiet, results, sheet, turns, workers = (
-    importlib.import_module(f"benchmarks.{name}")
-    for name in ("cases", "lammps", "quiet", "results", "sheet", "turns", "workers")
-)
+from membrane.study import benchmarks
+from membrane.study.benchmarks import cases, lammps, quiet, results, sheet, turns, workers
+from support import scratch
 
 
 def sample(**changes):

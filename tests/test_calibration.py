@@ -1,24 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Calibration: known parameters are found again, and lie within the uncertainty that is told."""
 
-import importlib
 import json
 import os
 import subprocess
-import sys
 import unittest
 import unittest.mock
 
 import numpy as np
 from membrane.files import BadFile
+from membrane.study.calibration import kept_runs, runs, search, surface, target
 from processes import Halt, kill
 from support import ROOT, long, run_yade, scratch, yade_environment
 
-sys.path.append(str(ROOT / "scripts"))
-target, search, surface, kept_runs, runs = (
-    importlib.import_module(f"calibration.{name}")
-    for name in ("target", "search", "surface", "kept_runs", "runs")
-)
 TIMES = np.linspace(0.0, 0.1, 101)  # [s]
 LOW, HIGH = np.log([10.0, 1.0]), np.log([1000.0, 100.0])
 NOISE = {"phase_difference": np.radians(0.1), "deployment_rate": 0.005}
@@ -287,7 +281,8 @@ class TestDeployments(unittest.TestCase):
         names, times = ("phase_difference",), np.linspace(0.0, 0.2, 11)
         wanted = target.Target(times, names, np.zeros((1, 11)), np.zeros(1))
         scene = ["--fold-lines=3", "--inner-width=0.15", "--spin-up-tolerance=1e-3"]
-        simulate = runs.Deployments(["beta"], wanted, [*scene, "--dt=2.3e-5", "--force-time-step"])
+        scene += ["--dt=2.3e-5", "--force-time-step"]
+        simulate = runs.Deployments(ROOT / "scripts" / "deploy.py", ["beta"], wanted, scene)
         with unittest.mock.patch.dict(os.environ, yade_environment()):
             (curves,) = simulate([[np.log(30.0)]])
         self.assertIsNone(curves)

@@ -13,10 +13,10 @@ from unittest import mock
 
 import numpy as np
 import yade.config
-from membrane import checkpoint, sail
-from membrane.checkpoint import SCENE, STATE, Checkpoints, save_scene
-from membrane.output import HistoryWriter, VtkSeries, is_whole_series, is_whole_table
 from membrane.parameters import SailParameters
+from membrane.results.output import HistoryWriter, VtkSeries, is_whole_series, is_whole_table
+from membrane.run import checkpoint, sail
+from membrane.run.checkpoint import SCENE, STATE, Checkpoints, save_scene
 from support import O, SceneTest, quiet, scratch
 from yade import utils
 

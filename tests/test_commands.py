@@ -11,8 +11,8 @@ from functools import lru_cache
 from pathlib import Path
 
 from membrane import scene
-from membrane.sail import LAST_GOOD
-from membrane.unfinished import UNFINISHED
+from membrane.results.unfinished import UNFINISHED
+from membrane.run.sail import LAST_GOOD
 from processes import Halt
 from support import O, ROOT, scratch, yade_environment
 

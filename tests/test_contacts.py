@@ -7,8 +7,8 @@ import unittest
 
 import membrane
 import numpy as np
-from membrane import contacts as ordinary
-from membrane import scene, spool
+from membrane import scene
+from membrane.scene import contacts as ordinary, spool
 from support import O, SceneTest, grid, interaction_loop, node_states
 from yade import utils
 from yade import wrapper as yade

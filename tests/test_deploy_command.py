@@ -4,7 +4,7 @@
 import json
 import unittest
 
-from membrane import report
+from membrane.view import report
 from support import ROOT, CommandTest, run_yade, scratch
 
 SCRIPT = ROOT / "scripts" / "deploy.py"

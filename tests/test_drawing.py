@@ -12,7 +12,7 @@ from functools import lru_cache
 import membrane
 import numpy as np
 from matplotlib.image import imread
-from membrane import window
+from membrane.view import window
 from support import ROOT, SceneTest, of_the_view, run_yade, scratch, yade_environment
 
 BACKGROUND = 0.2  # grey, of YADE's window

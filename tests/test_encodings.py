@@ -6,9 +6,9 @@ import os
 import subprocess
 import unittest
 
-from membrane import report
-from membrane.commands import file, folder
+from membrane.cli.options import file, folder
 from membrane.parameters import Refused
+from membrane.view import report
 from support import ROOT, CommandTest, scratch, yade_environment
 
 READ_OR_WRITTEN = {"read_text", "write_text", "open", "fdopen", "TemporaryFile"}

@@ -4,12 +4,11 @@
 import importlib
 import json
 import re
-import sys
 import unittest
 from dataclasses import replace
 
-from membrane import sail
-from membrane.output import read_history
+from membrane.results.output import read_history
+from membrane.run import sail
 from support import O, ROOT, CommandTest, long, quiet, run_yade, scratch
 
 
@@ -37,8 +36,9 @@ class TestIkaros(CommandTest):
     def test_a_run_that_goes_wrong_leaves_its_last_good_state(self):
         """The watch is told to stop at what is rounding."""
         O.reset()
-        sys.path.append(str(ROOT / "scripts"))
-        ikaros = importlib.import_module("ikaros")
+        found = importlib.util.spec_from_file_location("ikaros", self.SCRIPT)
+        ikaros = importlib.util.module_from_spec(found)
+        found.loader.exec_module(ikaros)
         folder = scratch() / "ikaros_wrong"
         folder.mkdir()
         strict = {"energy_tolerance": 1e-9, "spin_up_tolerance": 1e-2, "duration": 6.0}

@@ -7,8 +7,8 @@ from math import cos, hypot, sqrt
 
 import numpy as np
 from membrane import geometry, measures
-from membrane.fold import fold, fold_report
 from membrane.mesh import sail_mesh
+from membrane.mesh.fold import fold, fold_report
 
 STRIP, BAR, ARM, GAP, SPOOL = 0.022, 0.030, 0.040, 1e-4, 0.025
 TO_ARM = hypot(BAR - ARM / sqrt(2), ARM / sqrt(2))

@@ -5,18 +5,11 @@ import json
 import unittest
 
 import numpy as np
-from membrane.files import BadFile
-from membrane.fold_format import (
-    UNITS,
-    FoldFile,
-    FoldFrame,
-    crease_angles,
-    fold_angles,
-    read_fold,
-    write_fold,
-)
 from membrane import geometry
-from membrane.miura import miura
+from membrane.files import BadFile
+from membrane.mesh.fold_format import UNITS, FoldFile, FoldFrame, crease_angles, fold_angles
+from membrane.mesh.fold_format import read_fold, write_fold
+from membrane.mesh.miura import miura
 from support import fold_angle, scratch
 
 PATCH = {

@@ -5,9 +5,10 @@ import unittest
 from dataclasses import asdict
 
 import numpy as np
-from membrane import geometry, sail
-from membrane.fold import fold_report
+from membrane import geometry
+from membrane.mesh.fold import fold_report
 from membrane.parameters import SailParameters
+from membrane.run import sail
 from support import O, fold_angle
 
 

@@ -1,17 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A hub that turns freely: closed forms, angular momentum, energy, both paths, bad use."""
 
-import sys
 import unittest
 
 import membrane
 import numpy as np
-from membrane import scene, spool
-from support import ROOT, O, SceneTest, engines_by_class, node_states, release_sail, scratch
+from membrane import scene
+from membrane.scene import spool
+from membrane.study.verification.spinning import fit_frequency2
+from support import O, SceneTest, engines_by_class, node_states, release_sail, scratch
 
-sys.path.append(str(ROOT / "scripts"))
-
-from verification.spinning import fit_frequency2  # noqa: E402, found by the line above
 
 OMEGA, HUB, ARM, TIP = 10.0, 0.1, 0.3, 2e-3  # spin [rad/s], lengths [m], mass of a tip [kg]
 ARMS = 4

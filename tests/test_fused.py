@@ -10,9 +10,10 @@ import unittest
 import __main__
 import membrane
 import numpy as np
-from membrane import sail as sails
-from membrane import scene, spool
+from membrane import scene
 from membrane.parameters import SailParameters
+from membrane.run import sail as sails
+from membrane.scene import spool
 from support import (
     O,
     SceneTest,

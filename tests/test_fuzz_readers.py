@@ -6,29 +6,26 @@ meanwhile, so that a count that is believed before it is borne out makes the tes
 """
 
 import copy
-import importlib
 import json
 import os
 import random
 import re
 import resource
-import sys
 import unittest
 from functools import lru_cache
 
 import numpy as np
-from membrane import msh
 from membrane.files import BadFile
-from membrane.fold_format import LETTERS, FoldFile, FoldFrame, read_fold, write_fold
 from membrane.geometry import crease_corners
-from membrane.miura import miura
-from membrane.output import HistoryWriter, read_history
-from membrane.parameters import SailParameters, check, read_parameters
-from membrane.patterns import crease_pattern
-from support import FULL, ROOT, gmsh_sheet, scratch
+from membrane.mesh import msh
+from membrane.mesh.fold_format import LETTERS, FoldFile, FoldFrame, read_fold, write_fold
+from membrane.mesh.miura import miura
+from membrane.mesh.patterns import crease_pattern
+from membrane.parameters import SailParameters, check, read_values
+from membrane.results.output import HistoryWriter, read_history
+from membrane.study.calibration import target
+from support import FULL, gmsh_sheet, scratch
 
-sys.path.append(str(ROOT / "scripts"))
-target = importlib.import_module("calibration.target")
 
 FILES = 10_000 if os.environ.get(FULL) else 1_500
 MEMORY = 2**30  # bytes that a reader of files of a few kilobytes may ask for
@@ -274,8 +271,8 @@ def check_target(test, found):
     test.assertTrue(np.all(np.diff(found.times) > 0) and np.all(np.isfinite(found.noise)))
 
 
-def check_parameters(test, parameters):
-    check(parameters)
+def check_parameters(test, values):
+    check(SailParameters(**values))
 
 
 READERS = {
@@ -283,7 +280,7 @@ READERS = {
     "msh": (msh.read_msh, msh_seeds, check_msh, (damaged,), 3),
     "csv": (read_history, history_seeds, check_history, (damaged,), 2),
     "target": (target.read_target, target_seeds, check_target, (damaged,), 1),
-    "json": (read_parameters, parameter_seeds, check_parameters, (damaged, damaged_json), 1),
+    "json": (read_values, parameter_seeds, check_parameters, (damaged, damaged_json), 1),
 }
 
 

@@ -250,7 +250,7 @@ class TestVersion(unittest.TestCase):
             [
                 "/usr/bin/python3",
                 "-c",
-                f"import sys; sys.path.insert(0, {folder!r}); import membrane",
+                f"import sys; sys.path.insert(0, {folder!r}); from membrane import Membrane",
             ],
             capture_output=True,
             text=True,

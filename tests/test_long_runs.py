@@ -5,9 +5,9 @@ import unittest
 from dataclasses import replace
 
 import numpy as np
-from membrane import sail
-from membrane.output import read_history
 from membrane.parameters import SailParameters
+from membrane.results.output import read_history
+from membrane.run import sail
 from support import O, ROOT, long, main_run, quiet, run_yade, scratch
 
 
@@ -49,7 +49,7 @@ class TestLongRuns(unittest.TestCase):
     def test_example_of_ones_own_sail_runs_and_draws(self):
         folder = scratch() / "example"
         folder.mkdir()
-        done = run_yade(ROOT / "scripts" / "example.py", folder=folder)
+        done = run_yade(ROOT / "scripts" / "examples" / "example.py", folder=folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertGreater((folder / "my_sail.png").stat().st_size, 10000)
 

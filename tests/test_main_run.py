@@ -9,8 +9,8 @@ from dataclasses import asdict
 import numpy as np
 import yade.config
 from membrane import measures
-from membrane.fold import fold, fold_report
 from membrane.mesh import sail_mesh
+from membrane.mesh.fold import fold, fold_report
 from membrane.parameters import SailParameters
 from support import main_run, read_grid
 

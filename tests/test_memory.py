@@ -2,22 +2,19 @@
 """What a run and a report keep in memory does not grow with all that they have written."""
 
 import gc
-import sys
 import tracemalloc
 import unittest
 from unittest import mock
 
 import numpy as np
-from membrane import sail
 from membrane.files import BadFile
-from membrane.history import read_history
 from membrane.parameters import SailParameters
-from membrane.record import Recorder
-from support import ROOT, SceneTest, scratch
+from membrane.results.history import read_history
+from membrane.run import sail
+from membrane.run.record import Recorder
+from membrane.study.sweep import pictures
+from support import SceneTest, scratch
 
-sys.path.append(str(ROOT / "scripts"))
-
-from sweeping import pictures  # noqa: E402  (found only now)
 
 GRIDS = ((400, 1), (1, 400), (20, 20), (3, 2))  # values of alpha_c and of beta
 

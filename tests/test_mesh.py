@@ -6,8 +6,8 @@ from collections import Counter
 
 import numpy as np
 from membrane import geometry, measures
-from membrane.fold import fold
 from membrane.mesh import LINE_KINDS, sail_mesh, sheet_mesh
+from membrane.mesh.fold import fold
 
 OUTER, INNER, STRIP = 0.455, 0.103, 0.022
 REFINES = (1, 2, 3)

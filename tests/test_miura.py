@@ -4,9 +4,9 @@
 import unittest
 
 import numpy as np
-from membrane.fold_format import FoldFile, read_fold
-from membrane.miura import miura, vertices
-from membrane.patterns import crease_pattern, fold_by_angles, nearest_pose
+from membrane.mesh.fold_format import FoldFile, read_fold
+from membrane.mesh.miura import miura, vertices
+from membrane.mesh.patterns import crease_pattern, fold_by_angles, nearest_pose
 from support import ROOT
 
 SHAPE = {"columns": 4, "rows": 5, "along": 0.05, "across": 0.06, "angle": 65.0}

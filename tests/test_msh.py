@@ -7,7 +7,7 @@ import meshio
 import numpy as np
 from membrane import geometry
 from membrane.files import BadFile
-from membrane.msh import read_msh
+from membrane.mesh.msh import read_msh
 from support import gmsh_sheet, scratch
 
 # Two triangles and a fold line between them, as gmsh writes it.

@@ -6,13 +6,13 @@ import os
 import unittest
 from pathlib import Path
 
-from membrane import own
-from membrane.case import run_case
-from membrane.case_folder import part_of
 from membrane.files import replace_text
-from membrane.output import VtkSeries
 from membrane.parameters import SailParameters
-from membrane.unfinished import RESULTS, UNFINISHED, new_results
+from membrane.results import own
+from membrane.results.case_folder import part_of
+from membrane.results.output import VtkSeries
+from membrane.results.unfinished import RESULTS, UNFINISHED, new_results
+from membrane.run.case import run_case
 from support import scratch
 
 

@@ -11,7 +11,7 @@ from functools import lru_cache
 from pathlib import Path
 
 import yade.config
-from membrane.output import read_history
+from membrane.results.history import read_history
 from support import ROOT, scratch
 
 DISPOSABLE = "MEMBRANE_DISPOSABLE"  # set by scripts/in_debian.sh: packages may come and go here

@@ -14,10 +14,10 @@ from math import inf, pi
 from unittest import mock
 
 import numpy as np
-from membrane import sail
-from membrane.commands import count
-from membrane.history import read_history
-from membrane.parameters import SailParameters, add_arguments, describe, from_arguments, parse
+from membrane.cli.options import add_arguments, count, from_arguments, parse
+from membrane.parameters import SailParameters, describe
+from membrane.results.history import read_history
+from membrane.run import sail
 from support import O, ROOT, long, quiet, scratch, yade_environment
 
 # Tables 1 and 2 of the paper, and the defaults chosen among Table 2's.

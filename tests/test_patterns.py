@@ -8,11 +8,12 @@ from dataclasses import replace
 from unittest.mock import patch
 
 import numpy as np
-from membrane import geometry, pattern_mesh
-from membrane.fold_format import FoldFile, FoldFrame
-from membrane.miura import miura
-from membrane.pattern_mesh import mean_value_coordinates, mesh_pattern
-from membrane.patterns import crease_pattern, find_faces, fold_by_angles, nearest_pose
+from membrane import geometry
+from membrane.mesh import pattern_mesh
+from membrane.mesh.fold_format import FoldFile, FoldFrame
+from membrane.mesh.miura import miura
+from membrane.mesh.pattern_mesh import mean_value_coordinates, mesh_pattern
+from membrane.mesh.patterns import crease_pattern, find_faces, fold_by_angles, nearest_pose
 from support import rotation
 
 

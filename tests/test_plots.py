@@ -3,21 +3,18 @@
 
 import csv
 import itertools
-import sys
 import unittest
 from types import SimpleNamespace
 from unittest import mock
 
 import numpy as np
 from matplotlib.figure import Figure
-from membrane import plots
+from membrane.view import plots
 from mpl_toolkits.mplot3d import proj3d
 
+from membrane.study.verification.chart_picture import draw, words_box
 from support import ROOT, scratch
 
-sys.path.append(str(ROOT / "scripts"))
-
-from verification.chart_picture import draw, words_box  # noqa: E402  (found only now)
 
 UNITS = {"mm": 1e-3, "m": 1.0}
 

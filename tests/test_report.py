@@ -7,7 +7,6 @@ import io
 import json
 import re
 import shutil
-import sys
 import time
 import unittest
 from pathlib import Path
@@ -17,18 +16,17 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.figure import Figure
 from matplotlib.image import imread
-from membrane import plots, report, sail
 from membrane.geometry import crease_angles
 from membrane.mesh import sail_mesh
-from membrane.output import list_series, read_frame, read_history
 from membrane.parameters import SailParameters
-from support import ROOT, CommandTest, free_hub_run, pattern_run, scratch, short_run
+from membrane.results.output import list_series, read_frame, read_history
+from membrane.run import sail
+from membrane.study.sweep.page import render
+from membrane.study.sweep.report import report as sweeping_report
+from membrane.view import plots, report
+from support import CommandTest, free_hub_run, pattern_run, scratch, short_run
+from test_sweep import two_cases
 
-sys.path.append(str(ROOT / "scripts"))
-
-from sweeping.page import render  # noqa: E402  (found only now)
-from sweeping.report import report as sweeping_report  # noqa: E402
-from test_sweep import two_cases  # noqa: E402
 
 try:
     from selenium import webdriver

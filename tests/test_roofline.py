@@ -4,16 +4,13 @@
 Nothing here measures a speed. The long tests need valgrind, which `bench` installs.
 """
 
-import importlib
 import shutil
-import sys
 import unittest
 from unittest import mock
 
-from support import ROOT, long, scratch
+from membrane.study.benchmarks import roofline, sheet
+from support import long, scratch
 
-sys.path.append(str(ROOT / "scripts"))
-roofline, sheet = (importlib.import_module(f"benchmarks.{name}") for name in ("roofline", "sheet"))
 
 # Two instructions of a program that call a library between them; costs end at the last that is
 # not 0, and the line after "calls=" holds all of the called function.

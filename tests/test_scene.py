@@ -7,7 +7,8 @@ from contextlib import redirect_stderr
 from unittest import mock
 
 import numpy as np
-from membrane import scene, spool
+from membrane import scene
+from membrane.scene import bodies, spool
 from support import O, SceneTest, engines_by_class, grid
 
 
@@ -135,7 +136,7 @@ class TestProgress(SceneTest):
     def built(self, large):
         """What is shown while a sheet of 9 nodes is added, `large` nodes being many."""
         O.reset()
-        with redirect_stderr(io.StringIO()) as shown, mock.patch.object(scene, "LARGE", large):
+        with redirect_stderr(io.StringIO()) as shown, mock.patch.object(bodies, "LARGE", large):
             scene.add_membrane(*grid(2))
         return shown.getvalue().splitlines()
 

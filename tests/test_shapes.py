@@ -10,11 +10,11 @@ from xml.etree import ElementTree
 
 import meshio
 import numpy as np
+from membrane.files import BadFile
 from membrane.geometry import crease_angles, triangle_areas
 from membrane.mesh import sail_mesh
-from membrane.files import BadFile
-from membrane.output import VtkSeries, list_series, read_frame
 from membrane.parameters import SailParameters
+from membrane.results.output import VtkSeries, list_series, read_frame
 from support import plane_stress_stiffness, read_grid, scratch, short_run
 
 SHAPE = 12  # 0.06 s after the release

@@ -8,10 +8,10 @@ import unittest
 from dataclasses import replace
 
 import numpy as np
-from membrane import pattern_sail
-from membrane.output import read_history
-from membrane.pattern_sail import PatternParameters
-from membrane.sheet_words import described, doubts, slow_sides
+from membrane.mesh.sheet_words import described, doubts, slow_sides
+from membrane.parameters import PatternParameters
+from membrane.results.output import read_history
+from membrane.run import pattern_sail
 from support import O, SceneTest, gmsh_sheet, scratch
 
 # A sheet of two squares and the crease between them.

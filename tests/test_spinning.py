@@ -1,15 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Spinning bodies vibrate at the frequencies of their closed forms; coarse meshes, see verify."""
 
-import sys
 import unittest
 
 import numpy as np
-from support import ROOT, SceneTest
-
-sys.path.append(str(ROOT / "scripts"))
-
-from verification import spinning  # noqa: E402, found by the line above
+from membrane.study.verification import spinning
+from support import SceneTest
 
 
 class TestTether(SceneTest):

@@ -5,7 +5,8 @@ import unittest
 
 import membrane
 import numpy as np
-from membrane import scene, spool
+from membrane import scene
+from membrane.scene import spool
 from support import O, SceneTest
 from yade import wrapper as yade
 
@@ -20,7 +21,7 @@ class TestSpoolRotation(SceneTest):
         ball.shape, ball.material = yade.Sphere(radius=5e-4), yade.FrictMat()
         ball.state.blockedDOFs = "xyzXYZ"
         self.ball = O.bodies.append(ball)
-        self.turning = spool.turning(self.facets, [self.ball], OMEGA, membrane.SpoolRotation)
+        self.turning = spool.turning(self.facets, [self.ball], OMEGA)
         O.engines = [yade.ForceResetter(), self.turning]
         O.dt = STEP
         self.start = self.corners()

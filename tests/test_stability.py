@@ -1,17 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Where the method becomes unstable: a few of the limits that scripts/stability.py maps."""
 
-import sys
 import unittest
 
 import numpy as np
-from support import ROOT, O, SceneTest, Sheet, grid
-
-if str(ROOT / "scripts") not in sys.path:
-    sys.path.append(str(ROOT / "scripts"))
-
-from stability_maps import creases, drag, negative_stiffness, timestep  # noqa: E402
-from stability_maps.common import bisect, grows  # noqa: E402
+from membrane.study.stability import creases, drag, negative_stiffness, timestep
+from membrane.study.stability.common import bisect, grows
+from support import O, SceneTest, Sheet, grid
 
 
 class TestTimeStep(SceneTest):

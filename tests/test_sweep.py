@@ -10,35 +10,25 @@ import resource
 import shutil
 import signal
 import subprocess
-import sys
 import unittest
 from dataclasses import replace
 from functools import lru_cache, partial
 from pathlib import Path
 
 import numpy as np
-from membrane import report, sail
-from membrane.case_folder import (
-    COMPLETE,
-    DAMAGED,
-    DIVERGED,
-    FAILED,
-    KILLED,
-    MISSING,
-    look,
-    part_of,
-)
 from membrane.files import replacing, write_json
-from membrane.history import read_history
-from membrane.output import HistoryWriter
 from membrane.parameters import TABLE_2_CASES, SailParameters
+from membrane.results.case_folder import COMPLETE, DAMAGED, DIVERGED, FAILED, KILLED, MISSING, look
+from membrane.results.case_folder import part_of
+from membrane.results.history import read_history
+from membrane.results.output import HistoryWriter
+from membrane.run import sail
+from membrane.study.sweep import grid, results
+from membrane.view import report
 from processes import Halt, family, kill, send
 from support import ROOT, long, scratch, yade_environment
 from yade import utils
 
-sys.path.append(str(ROOT / "scripts"))
-
-from sweeping import grid, results  # noqa: E402  (found only now)
 
 CASE, SWEEP = ROOT / "scripts" / "case.py", ROOT / "scripts" / "sweep.py"
 COARSE = ["--fold-lines", "3", "--inner-width", "0.15"]

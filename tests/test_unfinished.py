@@ -7,14 +7,14 @@ import shutil
 import subprocess
 import unittest
 
-from membrane.case_folder import part_of
-from membrane.own import LIST, RUN, add_to_list, listed
-from membrane.unfinished import UNFINISHED, name_of, new_results
+from membrane.results.case_folder import part_of
+from membrane.results.own import LIST, RUN, add_to_list, listed
+from membrane.results.unfinished import UNFINISHED, name_of, new_results
 from support import scratch, yade_environment
 
 HOLD = """
 import sys
-from membrane.unfinished import new_results
+from membrane.results.unfinished import new_results
 with new_results(sys.argv[1]):
     print("held", flush=True)
     sys.stdin.read()

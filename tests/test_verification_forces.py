@@ -5,17 +5,14 @@ scripts/verify.py does it on all of them.
 """
 
 import functools
-import importlib
-import sys
 import unittest
 from unittest import mock
 
 import numpy as np
-from support import ROOT, SceneTest
+from membrane.study import verification
+from membrane.study.verification import forces
+from support import SceneTest
 
-sys.path.append(str(ROOT / "scripts"))
-verification = importlib.import_module("verification")
-forces = importlib.import_module("verification.forces")
 
 EVEN, UNEVEN = (options for options, _ in forces.FAST.values())
 STATES = ((EVEN, "flat"), (EVEN, "folded"), (EVEN, "collapsed"), (UNEVEN, "crumpled"))

@@ -6,8 +6,9 @@ import unittest
 
 import membrane
 import numpy as np
-from membrane import sail, scene
+from membrane import scene
 from membrane.parameters import SailParameters
+from membrane.run import sail
 from support import O, SceneTest, film_of_the_sail, scratch
 
 

@@ -1,22 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The Snakemake workflow: cases, command lines, and a sweep on a Slurm of the test's own."""
 
-import importlib
 import json
 import os
 import re
 import subprocess
-import sys
 import time
 import unittest
 
+from membrane.study.sweep import config
+from membrane.study.verification import paper
 from processes import Halt, kill
 from slurm import Slurm
 from support import ROOT, CommandTest, long, scratch, yade_environment
 
-sys.path.append(str(ROOT / "scripts"))
-
-from sweeping import config  # noqa: E402  (found only now)
 
 FOLDER = ROOT / "scripts" / "workflow"
 PROFILE = FOLDER / "slurm"
@@ -66,7 +63,6 @@ def new_folder(name):
 
 class TestPlan(unittest.TestCase):
     def test_without_a_grid_of_ones_own_the_cases_are_those_of_table_2(self):
-        paper = importlib.import_module("verification.paper")
         done = snakemake(new_folder("table_2"), "--dry-run", "--printshellcmds", "--jobs", "1")
         self.assertEqual(done.returncode, 0, done.stdout)
         found = re.findall(r"--alpha-crease=(\S+) --beta=(\S+)", done.stdout)

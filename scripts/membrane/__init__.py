@@ -3,14 +3,39 @@
 
 ``import membrane`` in any script run by ``yade`` loads the plugin and gives its classes
 (`Membrane`, `MembraneMat`, `MembraneForceEngine`, …), which also appear in ``yade.wrapper``.
-The building blocks of scenes are modules of this package: `mesh`, `fold`, `spool`, `scene`,
-`measures`, `output`, `plots`, `report`, `animation`.
+Without YADE the package can be imported, too: only who asks for a class is refused.
+
+Its rooms, each of which imports only from those before it (tests/test_rooms.py):
+the ground, modules beside this one, where errors and progress are known to all;
+`mesh` the sail's and others', folds, patterns, files of meshes; no YADE;
+`scene` bodies, engines, motion; `results` what runs leave; `view` pictures, page, film, window;
+`run` sails that run; `study` many runs; `cli` the commands of scripts/.
 """
 
-from . import _load
+import sys
 
-_classes = _load.load()
-_classes.update({alias: _classes[name] for alias, name in _load.ALIASES.items()})
-globals().update(_classes)
+from . import _former, _load  # noqa: F401
+
 __version__ = _load.VERSION
-__all__ = sorted(_classes)
+__all__ = sorted((*_load.CLASSES, *_load.ALIASES))
+
+
+def _load_plugin():
+    """Put the plugin's classes among the names of this package."""
+    classes = _load.load()
+    classes.update({alias: classes[name] for alias, name in _load.ALIASES.items()})
+    globals().update(classes)
+    __all__[:] = sorted(classes)
+
+
+def __getattr__(name):
+    """A class of the plugin, which is loaded only now."""
+    if name in (*__all__, *_load.DRAWERS):
+        _load_plugin()
+        if name in globals():
+            return globals()[name]
+    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+
+
+if "yade.wrapper" in sys.modules:  # saved scenes with the classes may follow
+    _load_plugin()

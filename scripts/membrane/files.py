@@ -44,6 +44,14 @@ def shown(value):
     return text if len(text) <= SHOWN else text[:SHOWN] + "…"
 
 
+def is_value(text):
+    """Whether a text is a finite number, written as others than Python write it, too."""
+    try:
+        return "_" not in text and math.isfinite(float(text))
+    except ValueError:
+        return False
+
+
 def read_bytes(path, largest=LARGEST):
     """All of a file's bytes; BadFile if there are none or more than `largest`."""
     with open(path, "rb") as file:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Parameters of the paper's scene: Tables 1 and 2, and what is assumed where they are silent.
 
-One dataclass holds names, defaults, units and ranges; command line, yade-batch table and
-summary.json all come from it.
+And those of a sail from a file. A dataclass of each holds names, defaults, units and ranges;
+command line, yade-batch table and summary.json all come from it.
 """
 
 import argparse
@@ -14,6 +14,7 @@ from numbers import Real
 from .files import BadFile, read_object, shown
 
 TABLE_1, TABLE_2, ASSUMED, RUN = "Table 1", "Table 2", "assumed", "run"
+SHEET, SPIN = "sheet", "spin"
 
 # The cases that the paper compares, and how long it takes to see the largest lag of the tips and
 # the largest lead that follows [s].
@@ -38,9 +39,6 @@ def _parameter(default, unit, source, text, least=0.0, most=inf, above=False, ch
             "choices": choices,
         },
     )
-
-
-parameter = _parameter  # for other scenes
 
 
 class Refused(argparse.ArgumentTypeError, ValueError):
@@ -187,6 +185,69 @@ class SailParameters:
         return asdict(self)
 
 
+def _as_in_the_paper(name, **changes):
+    """A parameter of the paper's sail, with another default maybe."""
+    (known,) = [item for item in fields(SailParameters) if item.name == name]
+    return field(default=changes.get("default", known.default), metadata=known.metadata)
+
+
+@dataclass(frozen=True)
+class PatternParameters:
+    """Parameters of a sail from a file; those with names as in SailParameters mean the same."""
+
+    unit: float = _parameter(0.0, "m", SHEET, "length of the file's unit; 0: as the file says")
+    size: float = _parameter(0.0, "m", SHEET, "length of the mesh's sides; 0: some 800 triangles")
+    start_frame: int = _parameter(
+        -1, "-", SHEET, "frame to start from; -1: the first folded form, if any", least=-1
+    )
+    flat: bool = _parameter(False, "-", SHEET, "start flat even if there is a folded form")
+
+    omega: float = _parameter(6 * pi, "rad/s", SPIN, "spin rate at the start")
+    hub_radius: float = _parameter(
+        0.0,
+        "m",
+        SPIN,
+        "nodes this near the axis turn steadily, as those of a mesh's group 'hub' do; "
+        "0, and no such group: the sail flies free",
+    )
+    tip_mass: float = _parameter(0.36e-3, "kg", SPIN, "mass at each tip")
+    tips: str = _parameter(
+        "corners",
+        "-",
+        SPIN,
+        "where the tip masses are: at a mesh's group 'tips' or else the corners of the outline, "
+        "or at the nodes farthest from the axis",
+        choices=("corners", "farthest", "none"),
+    )
+    gravity: float = _parameter(0.0, "m/s2", SPIN, "along -z")
+
+    thickness: float = _as_in_the_paper("thickness")
+    young: float = _as_in_the_paper("young")
+    poisson: float = _as_in_the_paper("poisson")
+    density: float = _as_in_the_paper("density")
+    theta0: float = _as_in_the_paper("theta0")
+    alpha: float = _as_in_the_paper("alpha")
+    alpha_crease: float = _as_in_the_paper("alpha_crease", default=100.0)
+    beta: float = _as_in_the_paper("beta", default=3.0)
+    gamma: float = _as_in_the_paper("gamma")
+    zeta: float = _as_in_the_paper("zeta")
+    # The law as printed is no gradient where triangles at a crease are not equally high.
+    crease_law: str = _as_in_the_paper("crease_law", default="conservative")
+    air_density: float = _as_in_the_paper("air_density", default=0.0)
+
+    dt: float = _parameter(0.0, "s", RUN, "time step; 0: half the critical one")
+    duration: float = _as_in_the_paper("duration")
+    history_interval: float = _as_in_the_paper("history_interval")
+    shapes_interval: float = _as_in_the_paper("shapes_interval")
+    energy_tolerance: float = _as_in_the_paper("energy_tolerance")
+    path: str = _as_in_the_paper("path")
+    exchange_period: int = _as_in_the_paper("exchange_period")
+    force_time_step: bool = _as_in_the_paper("force_time_step")
+
+    def __post_init__(self):
+        check(self)
+
+
 def check(parameters):
     """Raise ValueError naming the first of some parameters that is out of range.
 
@@ -262,107 +323,6 @@ def describe(item, default=None):
     return f"{about['text']}{unit} ({extent}{more}default {words})"
 
 
-def add_arguments(parser, kind=SailParameters, several=None, defaults=None):
-    """Add one option for every parameter to an argparse parser, grouped by source.
-
-    Parameters
-    ----------
-    parser : ArgumentParser
-    kind : class
-        Of the parameters.
-    several : dict, optional
-        Defaults, a sequence each, of those parameters that take one value or more.
-    defaults : dict, optional
-        Of the others, in place of those of `kind`.
-    """
-    chosen = {**(defaults or {}), **{name: list(v) for name, v in (several or {}).items()}}
-    for source in dict.fromkeys(item.metadata["source"] for item in fields(kind)):
-        group = parser.add_argument_group(f"parameters, {source}")
-        for item in fields(kind):
-            if item.metadata["source"] == source:
-                add_argument(group, item, chosen.get(item.name, item.default))
-
-
-def parse(parser, kind=SailParameters, *, several=None, defaults=None, root=None):
-    """Arguments of an argparse parser with options for all parameters and one for a file of them.
-
-    What is given on the command line wins over the file, which wins over `defaults`, a dict.
-
-    Parameters
-    ----------
-    parser : ArgumentParser
-        Gets the options.
-    kind : class
-        Of the parameters.
-    several : dict, optional
-        See add_arguments; the file's values of these parameters do not count.
-    defaults : dict, optional
-        In place of those of `kind`.
-    root : ArgumentParser, optional
-        Parses, if `parser` is one of its commands.
-
-    Raises
-    ------
-    BadFile or OSError
-    """
-    add_arguments(parser, kind, several, defaults)
-    text = "take parameters that are not given from this JSON file, as summary.json of a run"
-    parser.add_argument("--parameters", type=_named, metavar="FILE", help=text)
-    root = root or parser
-    arguments = root.parse_args()
-    file = getattr(arguments, "parameters", None)
-    if file is not None:
-        values = read_values(file, kind)
-        parser.set_defaults(**{n: v for n, v in values.items() if n not in (several or {})})
-        arguments = root.parse_args()
-    return arguments
-
-
-def _named(word):
-    """The name of a file from a word of the command line."""
-    check_name(word)
-    return word
-
-
-def add_argument(group, item, default):
-    """Add the option for one parameter to an argparse parser or group.
-
-    Parameters
-    ----------
-    group : ArgumentParser or its group
-    item, default
-        As of `describe`.
-    """
-    flag = "--" + item.name.replace("_", "-")
-    text = describe(item, default).replace("%", "%%")
-    if item.type is bool:
-        group.add_argument(flag, action=argparse.BooleanOptionalAction, default=default, help=text)
-        return
-    choices = item.metadata["choices"]
-    metavar = None if choices else item.metadata["unit"].replace("-", "N")
-    more = {"nargs": "+"} if isinstance(default, list) else {}
-    group.add_argument(
-        flag,
-        type=PARSERS[item.type],
-        default=default,
-        choices=choices,
-        metavar=metavar,
-        help=text,
-        **more,
-    )
-
-
-def from_arguments(arguments, overrides=None, kind=SailParameters):
-    """Parameters from parsed arguments; `overrides` (a dict, as from a batch table) win."""
-    values = {item.name: getattr(arguments, item.name) for item in fields(kind)}
-    for name, value in (overrides or {}).items():
-        if name not in values:
-            known = ", ".join(sorted(values))
-            raise ValueError(f"{name} is no parameter of the sail; known are {known}")
-        values[name] = value
-    return kind(**values)
-
-
 def read_values(path, kind=SailParameters):
     """Values of parameters by name from a JSON file: such an object, or a summary.json of a run.
 
@@ -389,8 +349,3 @@ def from_values(path, values, kind=SailParameters):
         return kind(**values)
     except ValueError as error:
         raise BadFile(path, "", str(error)) from None
-
-
-def read_parameters(path, kind=SailParameters):
-    """Parameters from a JSON file, see read_values; those it does not name have their defaults."""
-    return kind(**read_values(path, kind))

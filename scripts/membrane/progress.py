@@ -6,6 +6,10 @@ import time
 from contextlib import contextmanager
 
 
+class Terminated(BaseException):
+    """SIGTERM or SIGHUP has come; as an exception, so that what was begun is cleared away."""
+
+
 class Progress:
     """Prints a line now and then: rewritten in place on a terminal, every 10 % elsewhere.
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 import membrane
 import numpy as np
 from arsenal import CLASSES
-from membrane import scene, spool
+from membrane import scene
+from membrane.scene import spool
 from support import O, grid
 from yade import wrapper as yade
 

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How the commands of scripts/ end where something is wrong: one sentence and an exit status."""
+
+import signal
+import sys
+from contextlib import contextmanager, suppress
+
+from ..progress import Terminated
+
+STOPPED, TERMINATED = 130, 143  # exit statuses after Ctrl-C and SIGTERM, as shells have them
+DEBIAN = {"vtkmodules": "vtk9"}  # packages whose names in Python and in Debian differ
+
+
+@contextmanager
+def plain_errors(command, stopped="stopped by Ctrl-C"):
+    """End the program with one sentence where what is inside raises an error that is foreseen.
+
+    What a command imports beside the standard library belongs inside, too: a package may be
+    missing.
+
+    Parameters
+    ----------
+    command : str
+        Name that the sentence begins with.
+    stopped : str
+        What to say after Ctrl-C.
+    """
+    # Under nohup SIGHUP is ignored, and stays so.
+    heard = [s for s in (signal.SIGTERM, signal.SIGHUP) if signal.getsignal(s) != signal.SIG_IGN]
+    before = {number: signal.signal(number, _terminate) for number in heard}
+    with suppress(AttributeError):  # of a caller's own
+        sys.stdout.reconfigure(errors="backslashreplace")  # as standard error
+    try:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])  # which scripts/run.sh blocks
+        yield
+    except (KeyboardInterrupt, Terminated) as error:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # the end is near, and must not be disturbed
+        by_hand = isinstance(error, KeyboardInterrupt)
+        sentence = stopped if by_hand else "terminated"
+        print(f"\n{command}: {'. '.join(filter(None, [sentence, str(error)]))}", file=sys.stderr)
+        sys.exit(STOPPED if by_hand else TERMINATED)
+    except MemoryError as error:
+        sys.exit(f"{command}: there is not enough memory" + (f": {error}" if str(error) else ""))
+    except ModuleNotFoundError as error:
+        package = (error.name or "").partition(".")[0]
+        by_hand = f"apt-get install python3-{DEBIAN.get(package, package)}"
+        sys.exit(f"{command}: {error}; scripts/run.sh {command} installs it, or by hand: {by_hand}")
+    except BrokenPipeError:
+        sys.exit(f"{command}: nobody reads what it prints any more")
+    except (ImportError, ValueError, RuntimeError, OSError) as error:
+        sys.exit(f"{command}: {str(error) or type(error).__name__}")
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _terminate(number, frame):
+    raise Terminated

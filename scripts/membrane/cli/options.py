@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Options of commands: folders, files, numbers, and one for every parameter."""
+
+import argparse
+import os
+from dataclasses import fields
+from pathlib import Path
+
+from ..parameters import PARSERS, Refused, SailParameters, check_name, describe, read_values, whole
+
+
+def folder(text):
+    """A Path from a word of the command line, which must not be empty."""
+    if not text:
+        raise Refused("must name a folder")
+    return file(text)
+
+
+def file(text):
+    """A Path from a word of the command line; Refused unless its name is UTF-8."""
+    path = Path(os.path.expanduser(text))
+    check_name(path)
+    return path
+
+
+def count(text):
+    """A whole number from a word of the command line, which must be at least 1."""
+    found = whole(text)
+    if found < 1:
+        raise Refused(f"{text}: must be at least 1")
+    return found
+
+
+def add_out(parser, default=None, text="default: {}"):
+    """Add the option --out, a folder; its help is `text` with the default."""
+    text, default = text.format(default), default and Path(default)
+    parser.add_argument("--out", type=folder, default=default, metavar="DIR", help=text)
+
+
+def add_only(parser, names, text, word="MODULE"):
+    """Add the option --only for some of `names`; all by default."""
+    about = {"choices": names, "default": list(names), "metavar": word, "help": text}
+    parser.add_argument("--only", nargs="+", **about)
+
+
+def add_arguments(parser, kind=SailParameters, several=None, defaults=None):
+    """Add one option for every parameter to an argparse parser, grouped by source.
+
+    Parameters
+    ----------
+    parser : ArgumentParser
+    kind : class
+        Of the parameters.
+    several : dict, optional
+        Defaults, a sequence each, of those parameters that take one value or more.
+    defaults : dict, optional
+        Of the others, in place of those of `kind`.
+    """
+    chosen = {**(defaults or {}), **{name: list(v) for name, v in (several or {}).items()}}
+    for source in dict.fromkeys(item.metadata["source"] for item in fields(kind)):
+        group = parser.add_argument_group(f"parameters, {source}")
+        for item in fields(kind):
+            if item.metadata["source"] == source:
+                add_argument(group, item, chosen.get(item.name, item.default))
+
+
+def parse(parser, kind=SailParameters, *, several=None, defaults=None, root=None):
+    """Arguments of an argparse parser with options for all parameters and one for a file of them.
+
+    What is given on the command line wins over the file, which wins over `defaults`, a dict.
+
+    Parameters
+    ----------
+    parser : ArgumentParser
+        Gets the options.
+    kind : class
+        Of the parameters.
+    several : dict, optional
+        See add_arguments; the file's values of these parameters do not count.
+    defaults : dict, optional
+        In place of those of `kind`.
+    root : ArgumentParser, optional
+        Parses, if `parser` is one of its commands.
+
+    Raises
+    ------
+    BadFile or OSError
+    """
+    add_arguments(parser, kind, several, defaults)
+    text = "take parameters that are not given from this JSON file, as summary.json of a run"
+    parser.add_argument("--parameters", type=_named, metavar="FILE", help=text)
+    root = root or parser
+    arguments = root.parse_args()
+    file = getattr(arguments, "parameters", None)
+    if file is not None:
+        values = read_values(file, kind)
+        parser.set_defaults(**{n: v for n, v in values.items() if n not in (several or {})})
+        arguments = root.parse_args()
+    return arguments
+
+
+def _named(word):
+    """The name of a file from a word of the command line."""
+    check_name(word)
+    return word
+
+
+def add_argument(group, item, default):
+    """Add the option for one parameter to an argparse parser or group.
+
+    Parameters
+    ----------
+    group : ArgumentParser or its group
+    item, default
+        As of `describe`.
+    """
+    flag = "--" + item.name.replace("_", "-")
+    text = describe(item, default).replace("%", "%%")
+    if item.type is bool:
+        group.add_argument(flag, action=argparse.BooleanOptionalAction, default=default, help=text)
+        return
+    choices = item.metadata["choices"]
+    metavar = None if choices else item.metadata["unit"].replace("-", "N")
+    more = {"nargs": "+"} if isinstance(default, list) else {}
+    group.add_argument(
+        flag,
+        type=PARSERS[item.type],
+        default=default,
+        choices=choices,
+        metavar=metavar,
+        help=text,
+        **more,
+    )
+
+
+def from_arguments(arguments, overrides=None, kind=SailParameters):
+    """Parameters from parsed arguments; `overrides` (a dict, as from a batch table) win."""
+    values = {item.name: getattr(arguments, item.name) for item in fields(kind)}
+    for name, value in (overrides or {}).items():
+        if name not in values:
+            known = ", ".join(sorted(values))
+            raise ValueError(f"{name} is no parameter of the sail; known are {known}")
+        values[name] = value
+    return kind(**values)

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A hub that turns freely: it spins as the membrane's tethers let it, see FreeHub."""
+
+import numpy as np
+from yade import wrapper as yade
+
+
+def add(forces, bodies, spool, inertia, omega):
+    """Engine of a free hub.
+
+    Parameters
+    ----------
+    forces : MembraneForceEngine
+    bodies : sequence of int
+        Ids of the membrane's bodies that turn with the hub.
+    spool : SpoolRotation
+        Of the hub's facets; without any it is left alone.
+    inertia : float
+        About z [kg m2], without those bodies, >= 0.
+    omega : float
+        Spin at the beginning [rad/s].
+
+    Returns
+    -------
+    FreeHub
+    """
+    node = {body: i for i, body in enumerate(forces.membrane.bodyIds)}
+    nodes = [node[body] for body in bodies]
+    facets = {"spool": spool} if spool.ids else {}
+    return yade.FreeHub(forces=forces, nodes=nodes, inertia=inertia, spin=omega, **facets)
+
+
+def inertia(sail, positions):
+    """Moment of inertia about z [kg m2] of a free hub and its membrane, nodes at (N, 3) [m]."""
+    r2 = np.sum(np.asarray(positions)[:, :2] ** 2, axis=1)
+    return sail.hub.inertia + float(np.sum(sail.masses() * r2))
+
+
+def release(hub, omega, forces):
+    """Let the hub go with spin `omega` [rad/s], under `forces` (N, 3) [N] on the membrane's nodes.
+
+    The leapfrog's velocities lie half a step before the positions: that of the hub, too.
+    """
+    scene = yade.Omega()
+    states = [scene.bodies[hub.forces.membrane.bodyIds[i]].state for i in hub.nodes]
+    torque = sum(np.cross(s.pos, forces[i])[2] for i, s in zip(hub.nodes, states))
+    hub.spin = omega - 0.5 * scene.dt * torque / hub.totalInertia
+    turn = hub.spin * scene.dt
+    chord = 2 * np.sin(0.5 * turn) / scene.dt
+    c, s = np.cos(0.5 * turn), np.sin(0.5 * turn)
+    for state in states:
+        x, y, _ = state.pos
+        state.vel = (-chord * (c * y - s * x), chord * (c * x + s * y), 0.0)
+    hub.dead = False

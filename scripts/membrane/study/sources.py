@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The sources, in which the built package lies, too: studies of the plugin itself need them.
+
+What they find goes into reference/, and there is the paper's model a second time.
+"""
+
+import sys
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+
+_above = [p for start in (__file__, sys.argv[0]) for p in Path(start).resolve().parents]
+ROOT = next((folder for folder in _above if (folder / "reference" / "forces.py").is_file()), None)
+if ROOT is None:
+    raise ImportError("membrane.study: this needs the sources of the plugin, which are not here")
+REFERENCE, BUILD, SCRIPTS = (ROOT / name for name in ("reference", "build", "scripts"))
+
+_found = spec_from_file_location("reference.forces", REFERENCE / "forces.py")
+paper = module_from_spec(_found)
+_found.loader.exec_module(paper)

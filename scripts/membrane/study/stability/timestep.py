@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The estimate of the critical step against the step at which a perturbation begins to grow.
+
+Every node gets a random velocity. A tiny one (1e-6 m/s), about a state made one of rest by
+constant forces on its nodes, measures the state as it is: buckled sides have no stiffness. Growth
+of modes that alternate from step to step decides; a state that is unstable in itself, as a
+compressed one, grows smoothly and does not count. One of 1 m/s, without those forces, makes sides
+go taut and buckle again and again: there the limit is where the sum of kinetic, strain and crease
+energy doubles within 600 steps.
+"""
+
+import numpy as np
+from membrane import scene
+from membrane.mesh import sail_mesh, tip_masses
+from membrane.mesh.fold import fold
+
+from .common import Model, O, bisect, figure, folder, grows, save, write_table
+
+TINY, LARGE = 1e-6, 1.0  # m/s
+# Strain of the tethers of the flat sail: at 0 they change between slack and taut at any motion.
+TAUT = 1e-3
+TIP_MASS = 0.36e-3
+HEADER = (
+    "state",
+    "perturbation [m/s]",
+    "refine",
+    "zeta",
+    "beta",
+    "crease law",
+    "tether segments",
+    "tip mass [kg]",
+    "estimate [s]",
+    "measured [s]",
+    "measured/estimate",
+)
+
+
+def sail(refine=1, zeta=0.0, beta=0.0, law="paper", segments=4, tip=TIP_MASS, turned=False):
+    """The paper's sail without spool, in a scene; `turned`: mountains taken for valleys.
+
+    Returns the mesh and a Model.
+    """
+    mesh = sail_mesh(refine=refine, tether_segments=segments)
+    model = Model(
+        mesh.nodes,
+        mesh.triangles,
+        creases=mesh.creases,
+        crease_signs=mesh.crease_signs * (-1 if turned else 1),
+        cables=mesh.cables,
+        pointMasses=tip_masses(mesh, tip).tolist(),
+        alphaCrease=1000.0,
+        engine={"zeta": zeta, "beta": beta, "crease_law": law},
+    )
+    for anchor in mesh.anchors:
+        model.states[anchor].blockedDOFs = "xyzXYZ"
+    return mesh, model
+
+
+def placed(mesh, state):
+    """Positions (N, 3) [m] of the sail's nodes in a state by name."""
+    if state in ("folded", "overlapping"):
+        return fold(mesh)
+    stretch = {"flat": 1.0, "taut": 1.005, "buckled": 0.97}[state]
+    positions = mesh.nodes * [stretch, stretch, 1.0]
+    if state == "flat":
+        for chain in mesh.cables.reshape(4, -1, 2):
+            corner = positions[chain[-1, 1]]
+            positions[chain[:, 0]] = corner + (1 + TAUT) * (mesh.nodes[chain[:, 0]] - corner)
+    return positions
+
+
+def measure(model, positions, speed, rounds, damped=False):
+    """Estimate and measured limit [s] at `positions` (N, 3) [m], perturbed at `speed` [m/s]."""
+    model.balance(positions)
+    estimate = model.forces.criticalTimeStep()
+    free = np.array([len(state.blockedDOFs) < 6 for state in model.states])
+    velocities = speed * np.random.default_rng(7).normal(size=positions.shape) * free[:, None]
+    if speed != TINY:
+        model.balance(positions, release=True)
+
+    def is_above(step):
+        if speed == TINY:
+            return grows(model, positions, velocities, step, 1600 if damped else 500)
+        model.place(positions, velocities)
+        O.dt = step
+        ledger = model.start_ledger()
+        ledger.dead = False
+        for done in range(60):
+            scene.advance(10)
+            energy = ledger.total + ledger.crease
+            if done == 0:
+                first = max(energy, ledger.initial)
+            if not energy < 2 * first:
+                return True
+        return False
+
+    low = 0.9 * estimate
+    return estimate, bisect(is_above, low, 1.2 * estimate, rounds, widen=3)
+
+
+def cases(quick):
+    """Cases as dicts: state, speed and parameters of sail()."""
+    found = []
+    for state in ("flat", "taut", "buckled", "folded", "overlapping"):
+        for speed in (TINY, LARGE):
+            found.append({"state": state, "speed": speed})
+    if quick:
+        return found[:2] + [{"zeta": 1.0}, {"beta": 30.0, "state": "overlapping"}]
+    found += [{"state": "overlapping", "speed": TINY, "beta": b} for b in (30, 300)]
+    found += [{"zeta": z} for z in (0.02, 0.1, 0.3, 1.0, 2.0)]
+    found += [{"zeta": z, "state": "taut"} for z in (0.02, 1.0)]
+    for law in ("paper", "conservative"):
+        for state in ("flat", "folded", "overlapping"):
+            for beta in (30.0, 300.0):
+                found.append({"state": state, "beta": beta, "law": law, "speed": LARGE})
+    found += [{"state": "overlapping", "beta": b, "law": "paper"} for b in (3e3, 3e4, 3e5, 3e6)]
+    found += [{"state": "overlapping", "beta": b, "law": "conservative"} for b in (3e4, 3e6)]
+    found += [{"segments": n} for n in (2, 3, 6, 8)]
+    found += [{"tip": m, "zeta": z} for m in (0.0, 3.6e-3) for z in (0.0, 0.02, 1.0)]
+    found += [{"refine": n} for n in (2, 3, 4)]
+    return found
+
+
+def run(quick):
+    """Measure all cases; returns a line of text."""
+    rows = []
+    for case in cases(quick):
+        options = dict(case)
+        state, speed = options.pop("state", "flat"), options.pop("speed", TINY)
+        mesh, model = sail(turned=state == "overlapping", **options)
+        fine = options.get("refine", 1) > 1
+        rounds = 6 if quick or fine else 7
+        estimate, limit = measure(
+            model, placed(mesh, state), speed, rounds, options.get("zeta", 0.0) > 0
+        )
+        named = {"refine": 1, "zeta": 0.0, "beta": 0.0, "law": "paper", "segments": 4}
+        values = [options.get(k, v) for k, v in {**named, "tip": TIP_MASS}.items()]
+        rows.append([state, speed, *values, estimate, limit, limit / estimate])
+    out = folder(quick)
+    write_table(out / "timestep.csv", HEADER, rows)
+    draw(rows, out / "timestep.png")
+    ratios = np.array([row[-1] for row in rows])
+    flat = [r[-1] for r in rows if r[0] == "flat" and r[1] == TINY]
+    low = rows[int(np.argmin(ratios))]
+    return (
+        f"measured/estimate on the flat sail {min(flat):.3f} ... {max(flat):.3f}; least of all "
+        f"{low[-1]:.3f} ({low[0]}, {low[1]:g} m/s, zeta {low[3]:g}, beta {low[4]:g}); "
+        f"{np.sum(ratios < 1)} of {len(ratios)} measured limits below the estimate"
+    )
+
+
+def draw(rows, path):
+    """Measured over estimated step for all cases."""
+    drawing, axes = figure(height=0.17 * len(rows) + 1.2, width=8)
+    axis = axes[0, 0]
+    names = []
+    for i, row in enumerate(rows):
+        ratio, most = row[-1], 1.6
+        color = {"flat": "C0", "taut": "C2", "buckled": "C1", "folded": "C4"}.get(row[0], "C5")
+        axis.plot(min(ratio, most), i, ">" if ratio > most else "o", color=color, markersize=4)
+        names.append(
+            f"{row[0]}, {row[1]:g} m/s, refine {row[2]}, ζ {row[3]:g}, β {row[4]:g} {row[5]}, "
+            f"{row[6]} segments, tip {1e3 * row[7]:g} g"
+        )
+    axis.axvline(1.0, color="k", label="estimate = limit")
+    axis.axvspan(1.0, 1 / 0.95, color="C2", alpha=0.2, label="estimate within 5 % below")
+    axis.set_yticks(range(len(rows)), names, fontsize=6)
+    axis.set(
+        xlabel="measured limit / estimate [-] (> : 1.6 or more, or none found)",
+        ylim=(len(rows), -1),
+    )
+    axis.legend(fontsize=7, loc="lower right")
+    axis.grid(alpha=0.3, axis="x")
+    save(drawing, path)

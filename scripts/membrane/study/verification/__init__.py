@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Verification: the plugin against closed forms, other codes and a second implementation.
+
+Each module has `checks(full)`, which returns a list of Check; without `full` only what takes
+seconds. Run them by scripts/verify.py.
+"""
+
+from dataclasses import asdict, dataclass
+from math import isfinite
+
+from membrane.study.text_table import aligned
+
+TARGET, AT_MOST, MEASURED = "target", "at most", "measured"
+
+
+@dataclass(frozen=True)
+class Check:
+    """A number that was measured, and what it is held against.
+
+    Attributes
+    ----------
+    name : str
+        What was measured, unique in its module.
+    measured : float
+    target : float
+        What it should be; its upper bound if `kind` is AT_MOST; its value when last looked at if
+        `kind` is MEASURED.
+    tolerance : float
+        Greatest distance from the target, in the same unit; above the target if AT_MOST.
+    source : str
+        Where the target comes from, or why the tolerance is what it is.
+    unit : str
+    kind : str
+        TARGET: it must meet the target. AT_MOST: it must not exceed it. MEASURED: the number is
+        what it is, and the tolerance only tells when it changes.
+    """
+
+    name: str
+    measured: float
+    target: float
+    tolerance: float
+    source: str
+    unit: str = "-"
+    kind: str = TARGET
+
+    def __post_init__(self):
+        if self.kind not in (TARGET, AT_MOST, MEASURED):
+            raise ValueError(f"kind = {self.kind!r}: must be {TARGET!r}, {AT_MOST!r}, {MEASURED!r}")
+        if not (isfinite(self.target) and self.tolerance >= 0):
+            raise ValueError(f"{self.name}: target must be finite and tolerance >= 0")
+
+    @property
+    def holds(self):
+        """Whether the number is as it should be; never for one that is not finite."""
+        distance = self.measured - self.target
+        if self.kind != AT_MOST:
+            distance = abs(distance)
+        return isfinite(self.measured) and bool(distance <= self.tolerance)
+
+    def as_dict(self):
+        """All attributes and `holds`, ready for JSON; a number that is not finite becomes None."""
+        numbers = {
+            name: float(value) if isfinite(value) else None
+            for name, value in asdict(self).items()
+            if name in ("measured", "target", "tolerance")
+        }
+        return {**asdict(self), **numbers, "holds": self.holds}
+
+
+def at_most(name, measured, most, source, unit="-"):
+    """A Check that `measured` does not exceed `most`."""
+    return Check(name, measured, most, 0.0, source, unit, AT_MOST)
+
+
+def recorded(name, value, last, tolerance, source, unit="-"):
+    """A Check that records `value`, and fails only if it is off its `last` one by `tolerance`."""
+    return Check(name, value, last, tolerance, source, unit, MEASURED)
+
+
+def table(module, found):
+    """Lines of text that show a list of Check of a module."""
+    head = ("", "measured", "target", "tolerance", "unit", "")
+    signs = {TARGET: "", AT_MOST: "<= ", MEASURED: "last "}
+    rows = [
+        (
+            check.name,
+            f"{check.measured:.6g}",
+            signs[check.kind] + f"{check.target:.6g}",
+            f"{check.tolerance:.2g}" if check.kind != AT_MOST or check.tolerance else "",
+            check.unit,
+            "holds" if check.holds else "DOES NOT HOLD",
+        )
+        for check in found
+    ]
+    return [module, *("  " + line for line in aligned([head, *rows], left=(0, 4, 5)))]

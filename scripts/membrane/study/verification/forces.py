@@ -1,0 +1,594 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Every force of the plugin against reference/forces.py and against differences of its energy.
+
+The sail of the paper, tethers and tip masses with it, stands in random states (fixed seeds): flat,
+crumpled, buckled, folded, each turned somewhere. A second sail has its nodes moved about in the
+flat state, so that neighbouring triangles differ in height. Nothing moves: the engines run without
+an integrator and what they add to O.forces is read.
+"""
+
+from dataclasses import dataclass
+
+import membrane
+import numpy as np
+from membrane import scene
+from membrane.mesh import sail_mesh
+from membrane.mesh.fold import fold
+from yade import wrapper as yade
+
+from ..sources import paper
+from . import at_most, recorded
+
+YOUNG, POISSON, DENSITY, THICKNESS = 3.2e9, 0.34, 1420.0, 7.5e-6
+ALPHA, ALPHA_CREASE = 100.0, 1000.0
+CABLE_STIFFNESS, CABLE_DENSITY = 200.0, 2e-4
+TIP_MASS = 0.36e-3
+BETA, GAMMA, ZETA, AIR_DENSITY = 30.0, 100.0, 0.02, 1.2e-3
+OMEGA = 6 * np.pi
+TURNED = 0.9  # another natural angle [rad]
+STRONG = 1.0  # damping ratio at which tethers would push
+
+AGREEMENT = 1e-12  # of plugin and reference, over the largest value
+SHORTENING = 1e-11  # the same for L0 - l_cr: 1e-4 of the lengths, whose last digit is 2e-12 of it
+DIFFERENCE = 1e-8  # of force and difference of energy, over the largest force
+STRAIN_STEP, CREASE_STEP, FIELD_STEP = 1e-6, 5e-6, 1e-3  # of those differences [m]
+LOWEST = 2e-3  # height [m] of a crease's triangles under which that step is too long
+STRETCH = 3e-3  # of tethers of the flat sail
+ASKED = 500  # nodes of each state at which energies are differenced
+# Two bounds of the README's assumptions act at some nodes only. These are told apart from all
+# others, each compared over its own largest force, and there the bounds' effect is recorded: on
+# levers of creases whose height or length is collapsed, and on the damping of tethers that shorten
+# so fast that it exceeds their tension.
+CREASES, DAMPING = "creases (7), (8), {}, theta0 {:g}", "damping (9), zeta {:g}"
+TOGETHER = "all together, zeta {:g}"
+HEIGHTS = ("height_c", "height_d")
+AT_COLLAPSED = ", at collapsed creases"
+AT_PUSHED = ", at tethers it would push"
+AT_EITHER = ", at either"
+EFFECT = ": effect of the bound"
+
+FAST = {"sail": ({}, (0,)), "uneven sail": ({"jitter": 3e-3}, (0,))}  # options of the sail, seeds
+FULL = {
+    "sail": ({}, (0, 1, 2)),
+    "uneven sail": ({"jitter": 3e-3}, (0, 1, 2)),
+    "sail, refine 2": ({"refine": 2}, (0,)),
+}
+# Effects of the bounds when last looked at, in the states of FAST and of FULL; how often they act.
+LAST_EFFECTS = {
+    DAMPING.format(STRONG) + AT_PUSHED + EFFECT: (0.5153, 0.6109),
+    CREASES.format("paper", 0) + AT_COLLAPSED + EFFECT: (0.5930, 0.5960),
+    CREASES.format("paper", TURNED) + AT_COLLAPSED + EFFECT: (0.5930, 0.5960),
+    CREASES.format("conservative", 0) + AT_COLLAPSED + EFFECT: (0.8826, 0.8826),
+    CREASES.format("conservative", TURNED) + AT_COLLAPSED + EFFECT: (0.8824, 0.8824),
+    "creases of bounded length: share": (0.003053, 0.002599),
+    "creases of bounded height: share": (0.004884, 0.004084),
+    "tethers pushed: share": (0.2719, 0.2494),
+}
+CHANGE = 0.1  # of those numbers, from which on they are no longer the same
+
+
+@dataclass
+class State:
+    """Positions (N, 3) [m] and velocities (N, 3) [m/s] of the sail's nodes."""
+
+    positions: np.ndarray
+    velocities: np.ndarray
+
+
+class StandingSail:
+    """The paper's sail in the scene, and the same data for the reference.
+
+    Parameters
+    ----------
+    jitter : float
+        Nodes of the film lie up to that far from their place in the flat rest state [m].
+    refine : int
+        Of the mesh.
+
+    Attributes
+    ----------
+    mesh : SailMesh
+    rest : (N, 3) float
+        Rest positions [m].
+    net : Membrane
+    sides : (S, 2) int
+    cable : (S,) bool
+    lengths, critical, stiffness : (S,) float
+        Rest and critical lengths [m], stiffnesses [N/m], by the reference.
+    masses : (N,) float
+        [kg], by the reference.
+    creases : (C, 4) int
+        Nodes A, B, C, D.
+    inside : (C,) int
+        As paper.crease_angle wants it.
+    """
+
+    def __init__(self, jitter=0.0, refine=1):
+        self.omega = yade.Omega()
+        self.omega.reset()
+        self.mesh = mesh = sail_mesh(refine=refine)
+        self.rest = mesh.nodes.copy()
+        rng = np.random.default_rng(7)
+        self.rest[: mesh.film_size, :2] += jitter * rng.uniform(-1, 1, (mesh.film_size, 2))
+        point_masses = np.zeros(len(self.rest))
+        point_masses[mesh.tips] = TIP_MASS
+        self.net = scene.add_membrane(
+            self.rest,
+            mesh.triangles,
+            mesh.creases,
+            mesh.crease_signs,
+            mesh.cables,
+            material=scene.film(YOUNG, POISSON, DENSITY, THICKNESS),
+            pointMasses=point_masses.tolist(),
+            alpha=ALPHA,
+            alphaCrease=ALPHA_CREASE,
+            cableStiffness=CABLE_STIFFNESS,
+            cableDensity=CABLE_DENSITY,
+        )
+        self.states = [self.omega.bodies[i].state for i in self.net.bodyIds]
+        self.loop = yade.InteractionLoop(
+            [membrane.Ig2_MembraneNode_MembraneNode_MembraneGeom()],
+            [membrane.Ip2_MembraneMat_MembraneMat_MembranePhys(membrane=self.net)],
+            [membrane.Law2_MembraneGeom_MembranePhys_Buckling()],
+        )
+        self._ask_the_reference(point_masses)
+
+    def _ask_the_reference(self, point_masses):
+        mesh, rest = self.mesh, self.rest
+        self.sides = np.array(self.net.sides)
+        shares = paper.side_stiffness(rest, mesh.triangles, YOUNG, POISSON, THICKNESS)
+        cables = {tuple(sorted(pair)) for pair in mesh.cables.tolist()}
+        creased = {tuple(sorted(pair)) for pair in mesh.creases.tolist()}
+        pairs = [tuple(sorted(pair)) for pair in self.sides.tolist()]
+        if set(pairs) != set(shares) | cables or len(pairs) != len(set(pairs)):
+            raise RuntimeError("the plugin's sides are not those of the triangles and the cables")
+        self.cable = np.array([pair in cables for pair in pairs])
+        _, self.lengths = paper.side_geometry(rest, self.sides)
+        self.stiffness = np.array(
+            [shares.get(p, CABLE_STIFFNESS / length) for p, length in zip(pairs, self.lengths)]
+        )
+        alpha = np.where([pair in creased for pair in pairs], ALPHA_CREASE, ALPHA)
+        alpha = np.where(self.cable, 0.0, alpha)
+        self.critical = paper.critical_length(self.lengths, alpha, THICKNESS)
+        self.masses = (
+            paper.node_masses(rest, mesh.triangles, DENSITY, THICKNESS)
+            + paper.cable_masses(rest, mesh.cables, CABLE_DENSITY)
+            + point_masses
+        )
+        self.creases = paper.crease_nodes(mesh.triangles, mesh.creases)
+        # Triangles run counter-clockwise seen from above, where a mountain sticks out.
+        self.inside = -mesh.crease_signs
+
+    def shapes(self):
+        """Names of the SHAPES that this sail can take; the folded one is made for the even mesh."""
+        return [name for name in SHAPES if name != "folded" or np.all(self.rest == self.mesh.nodes)]
+
+    def place(self, state):
+        """Put the bodies into a State."""
+        for body, x, v in zip(self.states, state.positions.tolist(), state.velocities.tolist()):
+            body.pos, body.vel = x, v
+
+    def forces(self, *engines):
+        """Forces (N, 3) [N] that engines add in the present state."""
+        self.omega.engines = [yade.ForceResetter(), *engines]
+        self.omega.step()
+        return np.array([self.omega.forces.f(i, True) for i in self.net.bodyIds])
+
+    def engine(self, **options):
+        """A MembraneForceEngine of this sail."""
+        return membrane.MembraneForceEngine(membrane=self.net, forceTimeStep=True, **options)
+
+
+# --- states ---
+
+
+def turned(rng, positions):
+    """Positions (N, 3) [m] turned at random and moved by some centimetres."""
+    matrix, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    matrix *= np.sign(np.linalg.det(matrix))
+    return positions @ matrix.T + 0.05 * rng.normal(size=3)
+
+
+def flat(sail, rng):
+    """The flat sail, its nodes off by a tenth of a millimetre, those of tethers by a micrometre.
+
+    Tethers are stretched by so much that the last digit of a length is 1e-13 of the tension.
+    """
+    off = np.full((len(sail.rest), 1), 1e-4)
+    moved = sail.rest.copy()
+    for tether in sail.mesh.cables.reshape(4, -1, 2):
+        nodes, corner = tether[:, 0], tether[-1, 1]
+        off[[*nodes, corner]] = 1e-6
+        moved[nodes] += STRETCH * (sail.rest[nodes] - sail.rest[corner])
+    return moved + off * rng.normal(size=moved.shape)
+
+
+def crumpled(sail, rng):
+    """Nodes off by a quarter of a cell: creases at any angle."""
+    return sail.rest + 5e-3 / sail.mesh.refine * rng.normal(size=sail.rest.shape)
+
+
+def buckled(sail, rng):
+    """Compressed by 3 %, stretched by 1 % across, with waves out of the plane."""
+    x, y, _ = sail.rest.T
+    waves = 4e-3 * np.sin(2 * np.pi * x / 0.07) * np.cos(2 * np.pi * y / 0.11)
+    bent = np.column_stack([0.97 * x, 1.01 * y, waves])
+    return bent + 1e-5 * rng.normal(size=bent.shape)
+
+
+def folded(sail, rng):
+    """The folded sail, shaken by as much as its layers lie apart: some pass through each other."""
+    return fold(sail.mesh) + 1e-4 * rng.normal(size=sail.rest.shape)
+
+
+def collapsed(sail, rng):
+    """The flat sail with some creases whose C is almost on AB, and some with B almost at A."""
+    moved = flat(sail, rng)
+    chosen = sail.creases[:: len(sail.creases) // 9]
+    frame = paper.crease_frame(moved, chosen)
+    for index, (a, b, c, _) in enumerate(chosen):
+        if index % 2:
+            moved[b] = moved[a] + 0.02 * (moved[b] - moved[a])
+        else:
+            moved[c] -= 0.98 * frame["height_c"][index] * frame["up_c"][index]
+    return moved
+
+
+SHAPES = {
+    "flat": flat,
+    "crumpled": crumpled,
+    "buckled": buckled,
+    "folded": folded,
+    "collapsed": collapsed,
+}
+
+
+def random_state(sail, shape, seed=0):
+    """State of one of SHAPES, turned, with velocities of some metres a second."""
+    rng = np.random.default_rng([seed, list(SHAPES).index(shape)])
+    positions = turned(rng, SHAPES[shape](sail, rng))
+    return State(positions, 3.0 * rng.normal(size=positions.shape))
+
+
+# --- plugin against reference ---
+
+
+def difference(found, expected):
+    """Largest difference of two arrays over the largest value of the expected one [-]."""
+    found, expected = np.asarray(found), np.asarray(expected)
+    largest = np.abs(expected).max()
+    if found.shape != expected.shape or not largest > 0:
+        raise RuntimeError(f"nothing to compare: {found.shape}, {expected.shape}, {largest}")
+    return float(np.abs(found - expected).max() / largest)
+
+
+def rest_pairs(sail):
+    """What follows from the rest state: {title: (plugin's, reference's)}."""
+    net = sail.net
+    shortening = np.array(net.restLengths) - net.criticalLengths
+    return {
+        "masses of nodes (4)": (net.masses, sail.masses),
+        "masses of bodies (4)": ([state.mass for state in sail.states], sail.masses),
+        "rest lengths": (net.restLengths, sail.lengths),
+        "stiffnesses (5)": (net.stiffnesses, sail.stiffness),
+        "L0 - l_cr (6)": (shortening, sail.lengths - sail.critical),
+    }
+
+
+def scalar_pairs(sail, state):
+    """Tensions, angles and energies in a State: {title: (plugin's, reference's)}."""
+    sail.place(state)
+    x = state.positions
+    _, length = paper.side_geometry(x, sail.sides)
+    springs = length, sail.lengths, sail.critical, sail.stiffness
+    angles = paper.crease_angle(x, sail.creases, sail.inside)
+    pairs = {
+        "tensions (3), (6)": (sail.net.tensions(), paper.side_tension(*springs)),
+        "strain energy": (sail.net.elasticEnergy(), paper.side_energy(*springs).sum()),
+        "crease angles": (sail.engine(beta=BETA).creaseAngles(), angles),
+    }
+    for theta0 in (0.0, TURNED):
+        film = YOUNG, THICKNESS, BETA, GAMMA, theta0
+        expected = paper.crease_energy(x, sail.rest, sail.creases, sail.inside, *film).sum()
+        engine = sail.engine(beta=BETA, gamma=GAMMA, theta0=theta0, creaseLaw="conservative")
+        pairs[f"crease energy, theta0 {theta0:g}"] = (engine.creaseEnergy(), expected)
+    return pairs
+
+
+def collapsed_creases(sail, state, names=("length", *HEIGHTS)):
+    """Which creases (C,) bool of a State are collapsed: one of these names is bounded."""
+    now = paper.crease_frame(state.positions, sail.creases)
+    rest = paper.crease_frame(sail.rest, sail.creases)
+    shares = [now[name] / rest[name] for name in names]
+    return np.min(shares, axis=0) < paper.COLLAPSED
+
+
+def crease_pairs(sail, state, **bound):
+    """Forces (N, 3) [N] of the creases by both laws: {title: (plugin's, reference's)}.
+
+    bound: nothing, or `collapsed` of the reference.
+    """
+    sail.place(state)
+    laws = {"paper": paper.crease_forces_paper, "conservative": paper.crease_forces_conservative}
+    pairs = {}
+    for law, function in laws.items():
+        for beta, gamma, theta0 in ((BETA, GAMMA, 0.0), (3.0, 7.0, TURNED)):
+            engine = sail.engine(beta=beta, gamma=gamma, theta0=theta0, creaseLaw=law)
+            film = YOUNG, THICKNESS, beta, gamma, theta0
+            places = state.positions, sail.rest, sail.creases, sail.inside
+            expected = function(*places, *film, **bound)
+            pairs[CREASES.format(law, theta0)] = (sail.forces(engine), expected)
+    return pairs
+
+
+def damping_pairs(sail, state, **bound):
+    """Forces (N, 3) [N] of damping: {title: (plugin's, reference's)}.
+
+    bound: nothing, or `may_push` of the reference.
+    """
+    sail.place(state)
+    pairs = {}
+    for zeta in (ZETA, STRONG):
+        sides = sail.sides, sail.lengths, sail.stiffness, sail.masses, zeta, sail.cable
+        expected = paper.damping_forces(state.positions, state.velocities, *sides, **bound)
+        pairs[DAMPING.format(zeta)] = (sail.forces(sail.engine(zeta=zeta)), expected)
+    return pairs
+
+
+def force_pairs(sail, state):
+    """Forces (N, 3) [N] of each term in a State: {title: (plugin's, reference's)}."""
+    sail.place(state)
+    x, v = state.positions, state.velocities
+    sides = paper.side_forces(x, sail.sides, sail.lengths, sail.critical, sail.stiffness)
+    damping = damping_pairs(sail, state)
+    drag = paper.drag_forces(x, v, sail.mesh.triangles, AIR_DENSITY)
+    creases = crease_pairs(sail, state)
+    pairs = {
+        "sides (3), (6)": (sail.forces(sail.loop), sides),
+        **creases,
+        **damping,
+        "drag (10)": (sail.forces(sail.engine(airDensity=AIR_DENSITY)), drag),
+    }
+    for zeta in (ZETA, STRONG):
+        everything = sail.engine(beta=BETA, gamma=GAMMA, zeta=zeta, airDensity=AIR_DENSITY)
+        added = creases[CREASES.format("paper", 0)], damping[DAMPING.format(zeta)]
+        total = sides + drag + sum(expected for _, expected in added)
+        pairs[TOGETHER.format(zeta)] = (sail.forces(sail.loop, everything), total)
+    return pairs
+
+
+def pushed_tethers(sail, state, zeta):
+    """Which sides (S,) bool are taut tethers whose damping by zeta would exceed their tension."""
+    direction, length = paper.side_geometry(state.positions, sail.sides)
+    ends = state.velocities[sail.sides]
+    rate = paper.dot(ends[:, 1] - ends[:, 0], direction)
+    damping = rate * paper.damping_coefficient(sail.stiffness, sail.masses, sail.sides, zeta)
+    tension = paper.side_tension(length, sail.lengths, sail.critical, sail.stiffness)
+    return sail.cable & (length > sail.lengths) & (tension + damping < 0)
+
+
+def bounded_nodes(sail, state):
+    """Where bounds act on the forces of a State: function of a title -> (nodes (N,) bool, name)."""
+    nodes = np.arange(len(sail.rest))
+    low = np.isin(nodes, sail.creases[collapsed_creases(sail, state)])
+    groups = {"creases": (low, AT_COLLAPSED)}
+    for zeta in (ZETA, STRONG):
+        pushed = np.isin(nodes, sail.sides[pushed_tethers(sail, state, zeta)])
+        groups[DAMPING.format(zeta)] = pushed, AT_PUSHED
+        groups[TOGETHER.format(zeta)] = low | pushed, AT_EITHER
+    nowhere = np.zeros(len(nodes), dtype=bool), ""
+    return lambda title: next(
+        (g for start, g in groups.items() if title.startswith(start)), nowhere
+    )
+
+
+def state_differences(sail, state):
+    """Differences of plugin and reference in a State: {title: [-]}.
+
+    Forces at nodes where bounds act are told apart from the others.
+    """
+    differences = {title: difference(*pair) for title, pair in scalar_pairs(sail, state).items()}
+    bounded = bounded_nodes(sail, state)
+    for title, (found, expected) in force_pairs(sail, state).items():
+        there, where = bounded(title)
+        differences[title] = difference(found[~there], expected[~there])
+        if there.any():
+            differences[title + where] = difference(found[there], expected[there])
+    return differences
+
+
+def bound_effects(sail, state):
+    """What the bounds change in a State where they act: {title: [-]}.
+
+    The largest difference of the plugin's forces and those of the equations, without bounds, over
+    the largest of the latter at these nodes.
+    """
+    pairs = crease_pairs(sail, state, collapsed=0.0)
+    pairs.update(damping_pairs(sail, state, may_push=True))
+    bounded, effects = bounded_nodes(sail, state), {}
+    for title, (found, without) in pairs.items():
+        there, where = bounded(title)
+        if there.any():
+            effects[title + where + EFFECT] = difference(found[there], without[there])
+    return effects
+
+
+def law_difference(sail):
+    """Difference [-] of the two crease laws in the flat rest state, natural angle 0."""
+    sail.place(State(sail.rest, np.zeros_like(sail.rest)))
+    engines = (sail.engine(beta=BETA, creaseLaw=law) for law in ("paper", "conservative"))
+    return difference(*(sail.forces(engine) for engine in engines))
+
+
+def branches(sail, state):
+    """How many sides and creases a State has on each branch of their laws."""
+    _, length = paper.side_geometry(state.positions, sail.sides)
+    theta = paper.crease_angle(state.positions, sail.creases, sail.inside)
+    below = length < sail.critical
+    return {
+        "sides stretched": np.sum(~sail.cable & ~below),
+        "sides buckled": np.sum(~sail.cable & below),
+        "tethers taut": np.sum(sail.cable & ~below),
+        "tethers slack": np.sum(sail.cable & below),
+        "creases open": np.sum((theta > 0) & (theta < np.pi)),
+        "creases passed through": np.sum(theta < 0),
+        "creases beyond flat": np.sum(theta > np.pi),
+        "creases of bounded length": np.sum(collapsed_creases(sail, state, ["length"])),
+        "creases of bounded height": np.sum(collapsed_creases(sail, state, HEIGHTS)),
+        "tethers pushed": np.sum(pushed_tethers(sail, state, STRONG)),
+    }
+
+
+# --- forces against differences of energy ---
+
+
+def gradient(sail, state, energy, nodes, step):
+    """Minus the gradient (n, 3) [N] of energy() [J] at `nodes` (n,), by moving bodies.
+
+    Central differences of fourth order: those of one and of two `step` [m].
+    """
+    sail.place(state)
+    forces = np.empty((len(nodes), 3))
+    for row, node in enumerate(nodes):
+        start = state.positions[node]
+        for axis in range(3):
+            at = {}
+            for steps in (-2, -1, 1, 2):
+                moved = start.copy()
+                moved[axis] += steps * step
+                sail.states[node].pos = moved.tolist()
+                at[steps] = energy()
+            forces[row, axis] = -(8 * (at[1] - at[-1]) - (at[2] - at[-2])) / (12 * step)
+        sail.states[node].pos = start.tolist()
+    return forces
+
+
+def smooth_nodes(count, groups, near):
+    """Nodes (n,) of `count` that are in none of the `groups` (G, K) flagged by `near` (G,).
+
+    The energies have kinks, across which differences say nothing. Of many nodes, only some.
+    """
+    nodes = np.setdiff1d(np.arange(count), np.ravel(groups[near]))
+    return nodes[:: 1 + len(nodes) // ASKED]
+
+
+def side_difference(sail, state):
+    """Error of the sides' forces against strain energy [-], and the number of nodes asked."""
+    sail.place(state)
+    forces = sail.forces(sail.loop)
+    _, length = paper.side_geometry(state.positions, sail.sides)
+    near = np.abs(length - sail.critical) < 2.5 * STRAIN_STEP
+    nodes = smooth_nodes(len(forces), sail.sides, near)
+    expected = gradient(sail, state, sail.net.elasticEnergy, nodes, STRAIN_STEP)
+    return difference(forces[nodes], expected), len(nodes)
+
+
+def crease_difference(sail, state, theta0):
+    """The same for the creases' forces of the conservative law with natural angle theta0 [rad]."""
+    sail.place(state)
+    engine = sail.engine(beta=BETA, gamma=GAMMA, theta0=theta0, creaseLaw="conservative")
+    forces = sail.forces(engine)
+    frame = paper.crease_frame(state.positions, sail.creases)
+    theta = paper.crease_angle(state.positions, sail.creases, sail.inside)
+    lowest = np.minimum(frame["height_c"], frame["height_d"])
+    # A node moves by two steps, which changes the angle by no more than:
+    lever = 1 + np.max(np.abs([frame["foot_c"], frame["foot_d"]]), axis=0)
+    reach = 5 * CREASE_STEP * lever / lowest
+    cut = np.minimum(theta + 0.5 * np.pi, 1.5 * np.pi - theta)
+    near = (np.abs(theta) < reach) | (cut < reach) | (lowest < LOWEST)
+    near |= collapsed_creases(sail, state)
+    nodes = smooth_nodes(len(forces), sail.creases, near)
+    expected = gradient(sail, state, engine.creaseEnergy, nodes, CREASE_STEP)
+    return difference(forces[nodes], expected), len(nodes)
+
+
+def field_difference(sail, state):
+    """The same for the centrifugal field."""
+    sail.place(state)
+    field = membrane.CentrifugalField(membrane=sail.net, omega=OMEGA)
+    forces = sail.forces(field)
+    nodes = np.arange(0, len(forces), 1 + len(forces) // 100)
+    expected = gradient(sail, state, field.energy, nodes, FIELD_STEP)
+    return difference(forces[nodes], expected), len(nodes)
+
+
+def energy_differences(sail, state):
+    """{title: (error [-], number of nodes asked)} of all conservative forces in a State."""
+    return {
+        "sides": side_difference(sail, state),
+        "creases, conservative, theta0 0": crease_difference(sail, state, 0.0),
+        f"creases, conservative, theta0 {TURNED:g}": crease_difference(sail, state, TURNED),
+        "centrifugal field": field_difference(sail, state),
+    }
+
+
+# --- checks ---
+
+
+def bound_checks(full, effects, seen, states):
+    """Recorded checks of what the bounds change and how often they act.
+
+    effects: {title: [(effect [-], state's name)]}; seen: sums of `branches`; states: their number.
+    """
+    numbers = {}
+    for title, results in effects.items():
+        effect, label = max(results)
+        source = f"reference/forces.py without it; in {len(results)} of {states} states, most: "
+        numbers[title] = effect, source + label
+    creases = sum(seen[f"creases {at}"] for at in ("open", "passed through", "beyond flat"))
+    shares = {
+        "creases of bounded length": creases,
+        "creases of bounded height": creases,
+        "tethers pushed": seen["tethers taut"],
+    }
+    for branch, of_all in shares.items():
+        source = f"{seen[branch]} of {of_all}, in {states} states"
+        numbers[f"{branch}: share"] = seen[branch] / of_all, source
+    found = []
+    for title, (value, source) in numbers.items():
+        last = LAST_EFFECTS[title][full]
+        found.append(recorded(title, value, last, CHANGE * last, source))
+    return found
+
+
+def checks(full):
+    """Checks of all forces, over all sails and states; `full`, three seeds and a refined sail."""
+    agreement, effects, energies, laws, seen, states = {}, {}, {}, {}, {}, 0
+    for name, (options, seeds) in (FULL if full else FAST).items():
+        sail = StandingSail(**options)
+        laws[name] = law_difference(sail)
+        for title, pair in rest_pairs(sail).items():
+            agreement.setdefault(title, []).append((difference(*pair), name))
+        for shape, seed in ((shape, seed) for shape in sail.shapes() for seed in seeds):
+            state, label = random_state(sail, shape, seed), f"{name}, {shape}"
+            states += 1
+            for title, error in state_differences(sail, state).items():
+                agreement.setdefault(title, []).append((error, label))
+            for title, effect in bound_effects(sail, state).items():
+                effects.setdefault(title, []).append((effect, label))
+            for title, (error, asked) in energy_differences(sail, state).items():
+                energies.setdefault(title, []).append((error, label, asked))
+            for branch, count in branches(sail, state).items():
+                seen[branch] = seen.get(branch, 0) + int(count)
+    empty = [branch for branch, count in seen.items() if not count]
+    if empty:
+        raise RuntimeError(f"the {states} states have no {', no '.join(empty)}")
+
+    found = []
+    for title, results in agreement.items():
+        error, label = max(results)
+        source = f"reference/forces.py; worst of {len(results)}: {label}"
+        most = SHORTENING if title.startswith("L0") else AGREEMENT
+        found.append(at_most(f"{title}: plugin - reference", error, most, source))
+    found += bound_checks(full, effects, seen, states)
+    for title, results in energies.items():
+        error, label, _ = max(results)
+        source = (
+            f"central differences of energy at {sum(asked for *_, asked in results)} nodes "
+            f"away from kinks; worst of {len(results)}: {label}"
+        )
+        found.append(at_most(f"{title}: force + gradient of energy", error, DIFFERENCE, source))
+    even = max(error for name, error in laws.items() if not name.startswith("uneven"))
+    source = "model.md: the laws agree where heights are equal and theta0 = 0"
+    found.append(at_most("creases, flat: paper - conservative", even, AGREEMENT, source))
+    return found

@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The page report.html of a run: the sail in 3-D, to be played and turned, beside its curves.
+
+The page is one file that needs no network. `viewer.html` beside this module is its empty form,
+made by `scripts/run.sh viewer` from the sources in viewer/; here a run's results are put into it.
+"""
+
+import base64
+import json
+from dataclasses import fields as parameter_fields
+from pathlib import Path
+
+import numpy as np
+
+from ..files import BadFile, replace_text
+from ..geometry import crease_angles
+from ..results import own
+from ..results.finished_run import read_run
+from ..results.output import read_frame
+from ..results.unfinished import name_of
+
+PAGE = "report.html"
+TEMPLATE = Path(__file__).with_name("viewer.html")
+PLACE = "__RUN__"
+LARGEST = 40e6  # of the results in the page [bytes]; a larger run shows fewer of its shapes
+
+# What triangles may be coloured by: name of the field, label, unit, factor from SI, meaning.
+FIELDS = (
+    ("side_strain", "side strain", "10⁻⁶", 1e6, "mean of a triangle's sides"),
+    ("tension", "tension", "mN", 1e3, "mean of a triangle's sides"),
+    ("buckled", "buckled sides", "%", 100.0, "share of a triangle's sides"),
+    ("crease_angle", "crease angle", "deg", 180 / np.pi, "0 folded, 180 flat or no fold line"),
+)
+
+RPM = 30 / np.pi  # of 1 rad/s
+
+# Plots: label, unit, factor from SI, lines as (column of history.csv, label). A run has those of
+# whose columns its history.csv has the first.
+CURVES = (
+    ("deployment rate", "-", 1.0, [("deployment_rate", "rate")]),
+    ("area over flat area", "-", 1.0, [("projected_area", "projected")]),
+    ("hub", "rpm", RPM, [("hub_spin", "spin")]),
+    (
+        "phase difference",
+        "deg",
+        180 / np.pi,
+        [
+            ("phase_difference", "mean"),
+            *[(f"phase_difference_{tip}", f"tip {tip}") for tip in range(4)],
+        ],
+    ),
+    ("crease angle", "deg", 180 / np.pi, [("mean_crease_angle", "mean")]),
+    ("spin", "rad/s", 1.0, [("spin_rate", "mean of the sail")]),
+    (
+        "energy",
+        "J",
+        1.0,
+        [
+            ("spool_work", "spool work"),
+            ("kinetic_energy", "kinetic"),
+            ("elastic_energy", "elastic"),
+            ("crease_energy", "creases"),
+            ("damping_work", "damping work"),
+        ],
+    ),
+)
+MILLI = {"J": ("mJ", 1e3)}  # units for what stays below 1
+
+# Measures of summary.json: name, label, unit, factor from SI. A run has some of them.
+MEASURES = (
+    ("final_deployment_rate", "deployment rate at the end", "-", 1.0),
+    ("largest_deployment_rate", "largest deployment rate", "-", 1.0),
+    ("time_of_rate_0.9", "deployment rate above 0.9 from", "s", 1.0),
+    ("largest_lag", "largest lag of the tips", "deg", 180 / np.pi),
+    ("time_of_largest_lag", "time of the largest lag", "s", 1.0),
+    ("return_time", "tips back at the spool's angle", "s", 1.0),
+    ("spin_before", "spin of the hub before", "rpm", RPM),
+    ("spin_after", "spin of the hub after", "rpm", RPM),
+    ("spin_after_by_momentum", "after, by angular momentum", "rpm", RPM),
+    ("final_projected_area", "area over flat area at the end", "-", 1.0),
+    ("largest_projected_area", "largest area over flat area", "-", 1.0),
+    ("time_of_area_0.9", "area above 0.9 from", "s", 1.0),
+    ("final_spin_rate", "spin at the end", "rad/s", 1.0),
+    ("final_mean_crease_angle", "mean crease angle at the end", "deg", 180 / np.pi),
+    ("largest_spool_work", "largest work of the spool", "mJ", 1e3),
+    ("largest_energy_imbalance", "largest energy imbalance", "mJ", 1e3),
+)
+
+
+class NoViewer(RuntimeError):
+    """The viewer has not been built."""
+
+
+def write_report(folder):
+    """Write `folder`/report.html from the other results in this folder.
+
+    Parameters
+    ----------
+    folder : path
+        Of a finished run, with summary.json, history.csv and shapes/.
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Raises
+    ------
+    NoViewer
+        If the viewer has not been built.
+    OSError
+        If a result is missing.
+    """
+    folder = Path(folder)
+    if not TEMPLATE.is_file():
+        raise NoViewer("its viewer is not built; `scripts/run.sh viewer` does it, with npm")
+    before, after = TEMPLATE.read_text(encoding="utf-8").split(PLACE)
+    # "<" could end the page's script.
+    content = json.dumps(run_data(folder), allow_nan=False).replace("<", "\\u003c")
+    page = folder / PAGE
+    own.add_to_list(folder, own.RUN, [PAGE])
+    replace_text(page, before + content + after)
+    return page
+
+
+def run_data(folder):
+    """What the page shows of a run, as plain lists, numbers and packed arrays (see `_pack`)."""
+    run = read_run(folder)
+    triangles = len(run.triangles)
+    nodes = len(read_frame(run.shapes[0][1])[0])
+    per_shape = 6 * nodes + len(FIELDS) * triangles + len(run.creases)
+    shapes = thinned(run.shapes, per_shape)
+    positions, data = zip(*[_frame(path, nodes, triangles) for _, path in shapes])
+    frames = np.array(positions)
+    times = [time for time, _ in shapes]
+    creases = (run.triangles, run.creases, run.crease_signs)
+    angles = np.array([crease_angles(frame, *creases) for frame in frames])
+    return {
+        "name": name_of(folder),
+        "times": times,
+        "turned": run.turned(times).tolist(),
+        "positions": _lengths(frames),
+        "triangles": _pack(run.triangles, np.uint32),
+        "fields": [_field(data, *about) for about in FIELDS],
+        "creases": _pack(run.creases, np.uint32),
+        "creaseSigns": run.crease_signs.tolist(),
+        "creaseAngles": _levels(np.degrees(angles), 0.0, 180.0),
+        "cables": _pack(run.cables, np.uint32),
+        "tips": run.tips.tolist(),
+        "spool": run.spool and dict(zip(("radius", "height"), run.spool)),
+        **_curves(run.history),
+        "tables": [_measures(run.summary, nodes), _parameters(run.parameters)],
+    }
+
+
+def _frame(path, nodes, triangles):
+    """Positions and FIELDS of a shape; BadFile if it is not one of this sail."""
+    positions, data = read_frame(path)
+    if len(positions) != nodes or not np.isfinite(positions).all():
+        raise BadFile(path, "", f"must hold {nodes} nodes at finite places")
+    for name, *_ in FIELDS:
+        if name not in data or len(data[name]) != triangles or not np.isfinite(data[name]).all():
+            raise BadFile(path, name, f"must be {triangles} finite values")
+    return positions, data
+
+
+def thinned(shapes, per_shape, largest=LARGEST):
+    """Every n-th of the `shapes`, the last one included, so that the page does not grow too large.
+
+    Parameters
+    ----------
+    shapes : list
+    per_shape : int
+        Bytes of each.
+    largest : float
+        Of all together [bytes]; exceeded by large meshes, of which two shapes are kept.
+    """
+    keep = max(2, int(largest / per_shape))
+    return shapes[:: -max(1, -(-len(shapes) // keep))][::-1]
+
+
+def _pack(values, kind):
+    """An array as base64 of its bytes in C order, little-endian."""
+    packed = np.ascontiguousarray(values, dtype=np.dtype(kind).newbyteorder("<"))
+    return base64.b64encode(packed.tobytes()).decode()
+
+
+def _lengths(values):
+    """Lengths [m] of any shape as 16-bit integers, rounded to within half of `unit` [m]."""
+    unit = float(np.abs(values).max()) / np.iinfo(np.int16).max
+    return {"unit": unit, "data": _pack(np.rint(values / unit), np.int16)}
+
+
+def _levels(values, low, high):
+    """Values of any shape as 256 levels from `low` to `high`; those outside go to the ends."""
+    share = np.clip((np.asarray(values) - low) / (high - low), 0, 1)
+    return {"low": low, "high": high, "data": _pack(np.rint(255 * share), np.uint8)}
+
+
+def _field(data, name, label, unit, factor, meaning):
+    """A field of the triangles over all shapes, in the unit shown."""
+    values = factor * np.array([fields[name] for fields in data], dtype=float)
+    low, high = _range(name, values)
+    cut = bool(np.min(values) < low or np.max(values) > high)
+    about = {"name": name, "label": label, "unit": unit, "meaning": meaning, "cut": cut}
+    return {**about, **_levels(values, low, high)}
+
+
+def _range(name, values):
+    """Where the colours of a field begin and end, in the unit shown."""
+    if name == "buckled":
+        return 0.0, 100.0
+    if name == "crease_angle":
+        return 0.0, 180.0
+    # The film shortens a thousand times as much as it stretches; the scale is the taut film's.
+    taut = values[values > 0]
+    high = float(f"{np.percentile(taut, 95):.1e}") if len(taut) else 1.0
+    return (-high if name == "side_strain" else 0.0), high
+
+
+def _curves(history):
+    """The curves and their times, six digits each."""
+
+    def shorten(values):
+        return [float(f"{value:.6g}") for value in values]
+
+    curves = []
+    for label, unit, factor, lines in CURVES:
+        if lines[0][0] not in history:
+            continue
+        # What is 0 throughout, as the spool's work where there is none, would hide other lines.
+        told = [line for line in lines if line[0] in history and history[line[0]].any()]
+        lines = told or lines[:1]
+        if unit in MILLI and max(np.abs(history[column]).max() for column, _ in lines) < 1:
+            unit, factor = MILLI[unit]
+        drawn = [
+            {
+                "label": name,
+                "minor": name.startswith("tip "),
+                "values": shorten(factor * history[column]),
+            }
+            for column, name in lines
+        ]
+        curves.append({"label": label, "unit": unit, "lines": drawn})
+    return {"historyTimes": shorten(history["time"]), "curves": curves}
+
+
+def _measures(summary, nodes):
+    """Table of the main measures."""
+    rows = [["nodes", str(nodes), "-"]]
+    found = summary.get("measures")
+    for name, label, unit, factor in MEASURES:
+        value = found.get(name, False) if isinstance(found, dict) else False
+        if value is None or type(value) in (int, float):
+            rows.append([label, "never" if value is None else f"{factor * value:.4g}", unit])
+    return {"title": "Measures", "head": ["measure", "value", "unit"], "rows": rows}
+
+
+def _parameters(p):
+    """Table of all parameters; values that are not the default carry it behind."""
+    rows = []
+    for item in parameter_fields(p):
+        value, unit = getattr(p, item.name), item.metadata["unit"]
+        text = _number(value)
+        if value != item.default:
+            text += f" (default {_number(item.default)})"
+        rows.append([item.name, text, unit, f"{item.metadata['text']} ({item.metadata['source']})"])
+    return {"title": "Parameters", "head": ["parameter", "value", "unit", "meaning"], "rows": rows}
+
+
+def _number(value):
+    return f"{value:g}" if type(value) is float else str(value)
