@@ -274,6 +274,10 @@ def set_engines(
         **own,
     )
     geometry, physics, laws, collider = [], [], [], []
+    if touching or not fused:
+        # Also where the sides are no interactions: should they become some, YADE would end for want of
+        # it, before the forces engine can refuse them.
+        laws = [_plugin["Law2_MembraneGeom_MembranePhys_Buckling"]()]
     others = sorted({body.id for body in scene.bodies}.difference(membrane.bodyIds))
     if fused:
         membrane.removeInteractions()
@@ -285,7 +289,6 @@ def set_engines(
                 body.mask = 1
         geometry = [_plugin["Ig2_MembraneNode_MembraneNode_MembraneGeom"]()]
         physics = [_plugin["Ip2_MembraneMat_MembraneMat_MembranePhys"](membrane=membrane)]
-        laws = [_plugin["Law2_MembraneGeom_MembranePhys_Buckling"]()]
     if touching:
         contacts.check(others, INTEGRATED)
         for body in (scene.bodies[i] for i in touching):
