@@ -13,7 +13,7 @@ import importlib
 import sys
 from pathlib import Path
 
-from membrane.commands import plain_errors
+from membrane.commands import count, plain_errors
 from membrane.progress import announcer
 
 SCRIPTS = Path(sys.argv[0]).resolve().parent  # YADE keeps __file__ for itself
@@ -54,7 +54,7 @@ def command_line():
     parser.add_argument(
         "--no-deployment", action="store_true", help="leave out the paper's deployment"
     )
-    parser.add_argument("--rounds", type=int, default=7, help="of each comparison (default 7)")
+    parser.add_argument("--rounds", type=count, default=7, help="of each comparison (default 7)")
     parser.add_argument(
         "--patience",
         type=float,

@@ -3,7 +3,9 @@
 
 Run it by `scripts/run.sh calibrate TARGET [options]`; TARGET is a table with a header as
 history.csv: `time` [s] since the release, and `phase_difference` [rad] or `deployment_rate` [-] or
-both. Options that are not listed here go to scripts/deploy.py, as `--omega 20`: the scene.
+both; its columns are parted by commas, or by semicolons, tabs or blanks, and then its decimal point
+may be a comma. Options that are not listed here go to scripts/deploy.py, as `--omega 20`: the
+scene.
 
 About 40 runs of a few seconds; stopped and called again it goes on from those that it has. Writes
 calibration.json, calibration.png and runs.csv.
@@ -15,8 +17,10 @@ import time
 from pathlib import Path
 
 import sweeping  # noqa: F401  (makes parts of membrane importable without YADE)
-from membrane.commands import folder, plain_errors
+from membrane.commands import file, folder, plain_errors
 from membrane.files import write_json
+from membrane.own import CALIBRATION
+from membrane.parameters import whole
 from membrane.unfinished import new_results
 
 with plain_errors("calibrate"):
@@ -42,7 +46,7 @@ def command_line():
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,  # --alpha is the scene's
     )
-    parser.add_argument("target", type=Path, metavar="TARGET", help="table with the curve")
+    parser.add_argument("target", type=file, metavar="TARGET", help="table with the curve")
     parser.add_argument(
         "--column",
         action="append",
@@ -75,7 +79,11 @@ def command_line():
         help="default: out/calibration",
     )
     parser.add_argument(
-        "--seed", type=int, default=0, metavar="N", help="of the points that are tried (default 0)"
+        "--seed",
+        type=whole,
+        default=0,
+        metavar="N",
+        help="of the points that are tried (default 0)",
     )
     arguments, scene = parser.parse_known_args()
     for option in OURS:
@@ -154,7 +162,13 @@ def write_runs(path, simulate, names, target):
         for point, curves in zip(simulate.points, simulate.curves)
     ]
     np.savetxt(
-        path, rows, delimiter=",", fmt="%.6g", header=",".join([*names, "misfit"]), comments=""
+        path,
+        rows,
+        delimiter=",",
+        fmt="%.6g",
+        header=",".join([*names, "misfit"]),
+        comments="",
+        encoding="utf-8",
     )
 
 
@@ -181,7 +195,9 @@ def main():
 
     target = read_target(arguments.target, arguments.column or (), arguments.until)
     simulate = Deployments(names, target, [*scene, *held], tell)
-    with new_results(arguments.out) as part:  # a folder that cannot be is refused before the runs
+    with new_results(
+        arguments.out, CALIBRATION
+    ) as part:  # a folder that cannot be is refused before the runs
         kept = arguments.out / KEPT
         count = simulate.keep(kept)
         if count:

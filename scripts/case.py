@@ -7,11 +7,10 @@ the options are columns of the table. Exits with 0 for a case that is complete o
 """
 
 import argparse
-from pathlib import Path
 
 from membrane.batch import batch_row
 from membrane.case_folder import COMPLETE
-from membrane.commands import plain_errors
+from membrane.commands import folder, plain_errors
 from membrane.parameters import from_arguments, parse
 
 with plain_errors("case"):
@@ -23,7 +22,9 @@ def command_line():
     parser = argparse.ArgumentParser(
         prog="case", description="Deploy the paper's solar sail; leave all results or none."
     )
-    parser.add_argument("--out", metavar="DIR", help="folder of the case; it appears at the end")
+    parser.add_argument(
+        "--out", type=folder, metavar="DIR", help="folder of the case; it appears at the end"
+    )
     parser.add_argument(
         "--no-pictures", action="store_true", help="draw no pictures and write no report.html"
     )
@@ -41,25 +42,25 @@ def main():
     """Run the case; sys.exit with one sentence if that cannot be."""
     arguments = command_line()
     overrides, own, _ = batch_row(
-        out=arguments.out,
+        out=str(arguments.out or ""),
         no_pictures=arguments.no_pictures,
         checkpoint_every=arguments.checkpoint_every,
     )
     if not own["out"]:
         raise ValueError("--out is missing, the folder of the case")
-    folder = Path(own["out"])
+    place = folder(own["out"])
     found = run_case(
         from_arguments(arguments, overrides),
-        folder,
+        place,
         own["checkpoint_every"],
         pictures=not own["no_pictures"],
     )
     if found["outcome"] == COMPLETE:
-        print(f"Complete: {folder}")
+        print(f"Complete: {place}")
     elif found["time"] is None:
-        print(f"Diverged in the spin-up: {found['reason']}: {folder}")
+        print(f"Diverged in the spin-up: {found['reason']}: {place}")
     else:
-        print(f"Diverged {found['time']:.6g} s after the release: {found['reason']}: {folder}")
+        print(f"Diverged {found['time']:.6g} s after the release: {found['reason']}: {place}")
 
 
 with plain_errors("case", "stopped by Ctrl-C; run again it goes on"):

@@ -9,7 +9,7 @@ import argparse
 import contextlib
 from pathlib import Path
 
-from membrane.batch import batch_row
+from membrane.batch import batch_row, folder_of
 from membrane.commands import folder, plain_errors
 from membrane.parameters import from_arguments, parse
 from membrane.unfinished import new_results
@@ -45,7 +45,7 @@ def main():
     """Deploy the sail; sys.exit with one sentence if that cannot be."""
     arguments = command_line()
     overrides, _, case = batch_row()
-    out = arguments.out or (Path("out") / case.replace("/", "_") if case else Path("out"))
+    out = arguments.out or (Path("out") / folder_of(case) if case else Path("out"))
     parameters = from_arguments(arguments, overrides)
     look = window.Watch() if arguments.watch else sail.look_away
     films = []

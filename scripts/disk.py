@@ -19,7 +19,6 @@ sys.path.append(str(Path(sys.argv[0]).resolve().parent))
 with plain_errors("disk"):
     from matplotlib.figure import Figure
     from membrane import plots, scene
-    from membrane.files import replacing
     from verification.disk_mesh import disk_mesh
     from verification.spinning import OMEGA, disk_frequency, frequencies2, spin
     from verification.spinning import spinning_net
@@ -76,8 +75,7 @@ def draw(errors, run, path):
         figure.text(0.54 + 0.18 * k, 0.78, name, ha="center")
     meaning = "(nodal diameters, nodal circles); heights are enlarged, at one instant"
     figure.text(0.72, 0.1, meaning, ha="center", color="0.35", fontsize=9)
-    with replacing(path) as part:
-        figure.savefig(part, dpi=plots.DPI, format="png")
+    plots.save(figure, path)
 
 
 def order(error):

@@ -33,6 +33,7 @@ with plain_errors("ikaros"):
     from membrane import hub, plots, sail
     from membrane.record import Recorder
     from membrane.report import PAGE
+    from yade.wrapper import Omega
 
 RPM = 2 * pi / 60
 THICKNESS = 7.5e-6  # m, of the polyimide film
@@ -121,6 +122,7 @@ def report(p, history, rigid):
 
     return {
         "parameters": p.as_dict(),
+        "versions": sail.versions(),
         "measures": {
             "spin_before": float(history["hub_spin"][0]),
             "spin_after": mean(history["hub_spin"]),
@@ -160,7 +162,8 @@ def deploy(p, spin, folder):
     recorder = Recorder(folder, mesh, built, p.omega)
     try:
         sail.release(mesh, built, p)
-        sail.march(p, recorder, lambda row: f"hub {row['hub_spin'] / RPM:.2f} rpm")
+        with sail.last_good_saved(built, folder, Omega().iter):
+            sail.march(p, recorder, lambda row: f"hub {row['hub_spin'] / RPM:.2f} rpm")
     finally:
         recorder.close()
     history = recorder.columns()

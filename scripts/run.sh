@@ -57,8 +57,8 @@ END
 # Not the VTK of python3-paraview, which excludes python3-vtk9: it and YADE's crash in one process.
 run_packages=(yade python3-numpy python3-matplotlib python3-vtk9
     g++ cmake make libboost-dev libeigen3-dev python3-dev libglut-dev libgtest-dev)
-sail_packages=(python3-gmsh python3-meshio)
-test_packages=(xvfb xauth) # a display for the tests of drawing
+sail_packages=(python3-gmsh)
+test_packages=(xvfb xauth python3-meshio) # a display for the tests of drawing; another reader and writer of files
 verify_packages=(calculix-ccx python3-scipy)
 bench_packages=(lammps openmpi-bin valgrind)
 animation_packages=(xvfb libgl1-mesa-dri ffmpeg)
@@ -177,12 +177,20 @@ bundle_viewer() (
 
 # The viewer, if it can be had; all but report.html works without.
 viewer_if_possible() { bundle_viewer || (($? == 1)) || die "the viewer could not be bundled"; }
+
+# Sets HOME to a folder of this user's alone, the same each time, where the build cannot be written to.
+new_home() {
+    HOME=${TMPDIR:-/tmp}/membrane-home-$(id -u)
+    mkdir -m 700 "$HOME" 2>/dev/null || true
+    [[ -d $HOME && ! -L $HOME && -O $HOME && -w $HOME ]] || die "HOME is not set, and $HOME is no folder to write to"
+}
+
 # Sets what YADE needs to run and to find the plugin.
 set_environment() {
     # YADE writes its settings below HOME, and stops without one.
     if [[ ! -w ${HOME:-/nonexistent} ]]; then
         export HOME=$build/home
-        mkdir -p "$HOME"
+        if ! { mkdir -p "$HOME" && [[ -w $HOME ]]; } 2>/dev/null; then new_home; fi
     fi
     export PYTHONPATH=$build/python${PYTHONPATH:+:$PYTHONPATH} PYTHONUNBUFFERED=1 MPLBACKEND=Agg
 }

@@ -7,7 +7,7 @@ Run it by `scripts/run.sh sail PATTERN.fold|MESH.msh [options]`.
 import argparse
 from pathlib import Path
 
-from membrane.commands import folder, plain_errors
+from membrane.commands import file, folder, plain_errors
 from membrane.parameters import from_arguments, parse
 from membrane.unfinished import new_results
 
@@ -15,6 +15,7 @@ with plain_errors("sail"):
     from membrane import pattern_sail
     from membrane.pattern_sail import PatternParameters
     from membrane.report import PAGE
+    from membrane.sheet_words import described
 
 
 def command_line():
@@ -22,7 +23,7 @@ def command_line():
     parser = argparse.ArgumentParser(
         prog="sail", description="Spin a sail made from a crease pattern or a mesh."
     )
-    parser.add_argument("file", type=Path, help="crease pattern (.fold) or mesh of gmsh (.msh)")
+    parser.add_argument("file", type=file, help="crease pattern (.fold) or mesh of gmsh (.msh)")
     parser.add_argument(
         "--out", type=folder, default=Path("out"), metavar="DIR", help="default: out"
     )
@@ -37,6 +38,8 @@ def main():
     out, pictures = arguments.out, not arguments.no_pictures
     parameters = from_arguments(arguments, kind=PatternParameters)
     sheet = pattern_sail.read_sheet(arguments.file, parameters)
+    words = described(sheet, pattern_sail.place(sheet, parameters))
+    print(f"{arguments.file}: {words}", flush=True)
     with new_results(out) as part:
         page = not arguments.no_report
         summary = pattern_sail.fly(sheet, parameters, part, pictures, page=page)

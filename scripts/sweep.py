@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 
 import sweeping  # noqa: F401  (makes parts of membrane importable without YADE)
-from membrane.commands import folder, plain_errors
+from membrane.commands import count, folder, plain_errors
 
 with plain_errors("sweep"):
     from membrane.case_folder import COMPLETE, DAMAGED, DIVERGED
@@ -33,7 +33,7 @@ def command_line():
     run.add_argument(
         "-j",
         "--jobs",
-        type=int,
+        type=count,
         default=len(os.sched_getaffinity(0)),
         metavar="N",
         help="cases at once, each on one thread (default: the number of cores)",
@@ -59,20 +59,20 @@ def main():
     arguments = command_line()
     if arguments.command == "report":
         return tell_report(arguments.folder)
-    if arguments.jobs < 1 or not arguments.checkpoint_every >= 0:
-        raise ValueError("--jobs must be >= 1 and --checkpoint-every >= 0")
+    if not 0 <= arguments.checkpoint_every < float("inf"):
+        raise ValueError("--checkpoint-every must be >= 0 and finite")
     axes = {name: getattr(arguments, name) for name in grid.AXES}
     for name in axes:
         setattr(arguments, name, getattr(SailParameters(), name))
     cases = grid.grid(from_arguments(arguments), **axes)
     out = arguments.out.absolute()
     grid.refuse_other_results(out)
-    with batch.alone(out):
+    with batch.alone(out, tell):
         grid.plan(out, cases)
         batch.run(
             out,
             cases,
-            arguments.jobs,
+            min(arguments.jobs, len(cases)),
             arguments.checkpoint_every,
             not arguments.no_pictures,
             tell,

@@ -61,7 +61,7 @@ def save(name, found):
 
     entries, made_with = [], {}
     if RESULTS.exists():
-        before = json.loads(RESULTS.read_text())
+        before = json.loads(RESULTS.read_text(encoding="utf-8"))
         others = [module for module in MODULES if module != name]
         entries = [entry for entry in before["checks"] if entry["module"] in others]
         made_with = {m: used for m, used in before["made_with"].items() if m in others}

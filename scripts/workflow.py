@@ -16,7 +16,8 @@ import sweeping  # noqa: F401  (makes parts of membrane importable without YADE)
 from membrane.commands import plain_errors
 
 with plain_errors("workflow"):
-    from sweeping.config import check_file
+    from membrane.parameters import check_name
+    from sweeping.config import check_file, check_words
 
 SNAKEFILE = Path(__file__).resolve().parent / "workflow" / "Snakefile"
 
@@ -24,10 +25,12 @@ SNAKEFILE = Path(__file__).resolve().parent / "workflow" / "Snakefile"
 def asked(options):
     """What options of snakemake ask for: files of configuration, cores, the folder to work in.
 
-    Attributes of the result are `configfile` and `cores` (lists of str) and `directory` (Path).
+    Attributes of the result are `configfile`, `config` and `cores` (lists of str) and `directory`
+    (Path).
     """
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     parser.add_argument("--configfile", "--configfiles", nargs="*", action="extend", default=[])
+    parser.add_argument("-C", "--config", nargs="*", action="extend", default=[])
     parser.add_argument("-c", "--cores", "-j", "--jobs", nargs="?", action="append", default=[])
     parser.add_argument("-d", "--directory", type=Path, default=Path())
     return parser.parse_known_args(options)[0]
@@ -57,7 +60,7 @@ def lock(directory):
     """
     folder = directory / ".snakemake"
     folder.mkdir(parents=True, exist_ok=True)
-    handle = os.open(folder / "workflow.lock", os.O_RDWR | os.O_CREAT)
+    handle = os.open(folder / "workflow.lock", os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW)
     try:
         fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
@@ -70,8 +73,11 @@ def main():
     options = sys.argv[1:] or ["--cores", "all"]
     wanted = asked(options)
     check_cores(wanted.cores)
+    check_name(wanted.directory)
     for path in wanted.configfile:
+        check_name(path)
         check_file(path)
+    check_words(wanted.config)
     if not is_plan(options):
         lock(wanted.directory)
     command = ["snakemake", "--snakefile", str(SNAKEFILE), "--nolock", "--rerun-incomplete"]

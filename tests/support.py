@@ -373,8 +373,11 @@ def wind_a_tether(path="law2"):
 
 
 @lru_cache(maxsize=None)
-def gmsh_sheet(version=4.1, binary=False, size=0.1):
-    """A .msh file of gmsh: a square of 0.4 m with a mountain along x = 0, tips and a hub."""
+def gmsh_sheet(version=4.1, binary=False, size=0.1, parts=0, **options):
+    """A .msh file of gmsh: a square of 0.4 m with a mountain along x = 0, tips and a hub.
+
+    `parts`: into how many it is partitioned; `options` are those of gmsh's Mesh, as SaveAll=1.
+    """
     import gmsh
 
     gmsh.initialize(readConfigFiles=False)
@@ -391,10 +394,13 @@ def gmsh_sheet(version=4.1, binary=False, size=0.1):
     groups = (0, p[:4], "tips"), (0, p[6:], "hub"), (1, lines[6:], "mountain"), (2, faces, "film")
     for dimension, tags, name in groups:
         model.setPhysicalName(dimension, model.addPhysicalGroup(dimension, tags), name)
+    options = {**options, "MshFileVersion": version, "Binary": binary}
+    for name, value in options.items():
+        gmsh.option.setNumber(f"Mesh.{name}", value)
     model.mesh.generate(2)
-    gmsh.option.setNumber("Mesh.MshFileVersion", version)
-    gmsh.option.setNumber("Mesh.Binary", binary)
-    path = scratch() / f"sheet_{version}_{binary}_{size}.msh"
+    if parts:
+        model.mesh.partition(parts)
+    path = scratch() / f"sheet_{size}_{parts}_{'_'.join(map(str, options.values()))}.msh"
     gmsh.write(str(path))
     gmsh.finalize()
     return path

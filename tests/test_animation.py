@@ -14,6 +14,7 @@ from unittest import mock
 
 import numpy as np
 from membrane import animation
+from membrane.files import TEMPORARY
 from membrane.finished_run import read_run
 from membrane.mesh import sail_mesh
 from membrane.output import VtkSeries, list_series, read_frame
@@ -221,7 +222,7 @@ class TestCommand(CommandTest):
             text=True,
             start_new_session=True,
         )
-        while process.poll() is None and not list(folder.glob("*.part.*")):
+        while process.poll() is None and not list(folder.glob(f"{TEMPORARY}*")):
             sleep(0.01)
         os.killpg(process.pid, signal.SIGINT)  # as a terminal does
         said, _ = process.communicate()  # until no process holds its output

@@ -3,18 +3,21 @@
 
 import importlib
 import json
+import os
 import subprocess
 import sys
 import unittest
+import unittest.mock
 
 import numpy as np
+from membrane.files import BadFile
 from processes import Halt, kill
 from support import ROOT, long, run_yade, scratch, yade_environment
 
 sys.path.append(str(ROOT / "scripts"))
-target, search, surface, kept_runs = (
+target, search, surface, kept_runs, runs = (
     importlib.import_module(f"calibration.{name}")
-    for name in ("target", "search", "surface", "kept_runs")
+    for name in ("target", "search", "surface", "kept_runs", "runs")
 )
 TIMES = np.linspace(0.0, 0.1, 101)  # [s]
 LOW, HIGH = np.log([10.0, 1.0]), np.log([1000.0, 100.0])
@@ -71,7 +74,7 @@ class TestTarget(unittest.TestCase):
         return path
 
     def rows(self, count=20, **changes):
-        lines = [f"{1e-3 * i},{changes.get(f'row_{i}', i)},0" for i in range(count)]
+        lines = [f"{1e-3 * i},{changes.get(f'row_{i}', i / 20)},0" for i in range(count)]
         return "\n".join(["time,deployment_rate,other", *lines]) + "\n"
 
     def test_noise_of_a_smooth_curve_is_that_which_was_added(self):
@@ -86,13 +89,64 @@ class TestTarget(unittest.TestCase):
         text = self.rows().replace(",0\n", ",?\n")  # in a column that is not asked for
         found = target.read_target(self.write(text), until=0.0155)
         self.assertEqual(found.columns, ("deployment_rate",))
-        self.assertEqual(found.values.tolist(), [list(range(16))])
+        self.assertEqual(found.values.tolist(), [[i / 20 for i in range(16)]])
+
+    def test_tables_of_other_programs_are_read(self):
+        text = self.rows().replace("0\n", "zero\n")
+        plain = target.read_target(self.write(text), until=1.0)
+        comma = text.replace(".", ",")
+        self.assertEqual(len(plain.times), 20)
+        for other in (
+            text.replace(",", ", "),
+            text.replace(",", " ,\t"),
+            text + "\n\n \n",
+            text.replace("\n", "\n\n"),
+            text[:-1],
+            text[: -len(",zero\n")] + ",",
+            "# " + text,
+            "\ufeff" + text,
+            text.replace("\n", "\r\n"),
+            text.replace("\n", "\r"),
+            text.replace(",", ";"),
+            text.replace("\n", ",\n").replace(",", ";"),
+            text.replace(",", "\t"),
+            text.replace(",", "  "),
+            text.replace(",", '","').replace("\n", '"\n"')[:-1].join(('"', "")),
+            self.rows().replace(",", ";").replace(".", ","),
+            self.rows().replace(",", "\t").replace(".", ","),
+            self.rows().replace(",", "; ").replace(".", ",").replace("\n", ";\n"),
+        ):
+            with self.subTest(other[:90]):
+                found = target.read_target(self.write(other), until=1.0)
+                np.testing.assert_array_equal(found.times, plain.times)
+                np.testing.assert_array_equal(found.values, plain.values)
+        for other, said in (
+            (comma, "line 2: has 5 values for 3 columns; where commas are decimal, semicolons"),
+            (text.replace(",", ";").replace("0.05", "0,05"), "'0,05'; must be a finite number"),
+            (text.replace("0.05,", "0.05,0.05,"), "line 3: has 4 values for 3 columns"),
+            (text.replace("0.05", '"0.05'), "is no table"),
+            ("\n \n,,\n", "is empty"),
+        ):
+            with self.subTest(other[:90]), self.assertRaisesRegex(BadFile, said):
+                target.read_target(self.write(other), until=1.0)
+
+    def test_degrees_and_percent_are_seen(self):
+        for name, factor, said in (
+            ("phase_difference", -3.4, "reaches -3.23 rad, .* are these degrees"),
+            ("deployment_rate", 2, "reaches 1.9, .* are these percent"),
+        ):
+            rows = [f"{i / 1000},{factor * i / 20}" for i in range(20)]
+            text = "\n".join([f"time,{name}", *rows])
+            with self.subTest(name), self.assertRaisesRegex(BadFile, said):
+                target.read_target(self.write(text), until=1.0)
+            found = target.read_target(self.write(text), until=0.0145)
+            self.assertEqual(len(found.times), 15)
 
     def test_tables_that_are_no_curve_are_refused(self):
         cases = {
             "no column phase_difference": (self.rows(), ["phase_difference"], 1.0),
             "no column time": (self.rows().replace("time", "tme"), [], 1.0),
-            "has 6 times": (self.rows(), [], 0.005),
+            "has 6 times .* times are in s": (self.rows(), [], 0.005),
             "line 5, deployment_rate: is .\\?.; must be a finite": (self.rows(row_3="?"), [], 1.0),
             "grow": (self.rows().replace("0.004,", "0.003,"), [], 1.0),
             "no column phase_difference or deployment_rate": ("time,a\n0,1\n", [], 1.0),
@@ -228,6 +282,18 @@ def noisy_run(alpha_crease, beta, seed, *scene):
     return path
 
 
+class TestDeployments(unittest.TestCase):
+    def test_a_run_that_diverges_has_no_curves_and_ends_nothing(self):
+        names, times = ("phase_difference",), np.linspace(0.0, 0.2, 11)
+        wanted = target.Target(times, names, np.zeros((1, 11)), np.zeros(1))
+        scene = ["--fold-lines=3", "--inner-width=0.15", "--spin-up-tolerance=1e-3"]
+        simulate = runs.Deployments(["beta"], wanted, [*scene, "--dt=2.3e-5", "--force-time-step"])
+        with unittest.mock.patch.dict(os.environ, yade_environment()):
+            (curves,) = simulate([[np.log(30.0)]])
+        self.assertIsNone(curves)
+        self.assertEqual((len(simulate), len(simulate.points)), (1, 0))
+
+
 class TestKeptRuns(unittest.TestCase):
     ABOUT = {"names": ["beta"], "columns": ["phase_difference"], "times": [0.0, 0.1, 0.2]}
     RUNS = {(1 / 3,): np.array([[0.1, -1e-300, 2 / 7]]), (0.5,): None}
@@ -279,6 +345,18 @@ class TestKeptRuns(unittest.TestCase):
         ):
             self.path.write_text(text)
             self.assertEqual(self.found(), [], text)
+
+    def test_a_file_of_another_is_not_written_over(self):
+        kept_runs.refuse_another(self.path)
+        link = self.path.with_suffix(".link")
+        link.symlink_to(self.path)
+        other = self.path.with_suffix(".txt")
+        for path, text in ((link, None), *((other, text) for text in ("", "mine\n", "[1]\n"))):
+            if text is not None:
+                path.write_text(text)
+            with self.assertRaisesRegex(ValueError, f"{path} was not made by calibrate"):
+                kept_runs.refuse_another(path)
+        kept_runs.refuse_another(self.path.with_suffix(".missing"))
 
 
 class TestCommand(unittest.TestCase):

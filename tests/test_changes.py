@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What is changed behind an engine's back is refused at its next look, in a sentence that names it."""
+"""What is changed behind an engine's back is refused at its next look, by a sentence."""
 
 import unittest
 
@@ -192,7 +192,7 @@ class TestSides(ChangeTest):
         self.refused("bodies #0 and #15 interact but are no side of the membrane")
 
     def test_loop_twice_or_another_one(self):
-        made = self.law2()
+        self.law2()
         loop = next(e for e in O.engines if isinstance(e, yade.InteractionLoop))
         O.engines = put(O.engines, loop, 1)
         self.refused("InteractionLoop is in O.engines twice")

@@ -10,10 +10,11 @@ import unittest
 from functools import lru_cache
 from pathlib import Path
 
+from membrane import scene
 from membrane.sail import LAST_GOOD
 from membrane.unfinished import UNFINISHED
 from processes import Halt
-from support import ROOT, scratch, yade_environment
+from support import O, ROOT, scratch, yade_environment
 
 SCRIPTS = ROOT / "scripts"
 PATTERN = SCRIPTS / "patterns" / "miura.fold"
@@ -31,7 +32,7 @@ folder=$1 earlier=$3
 shift 4
 "$@"
 status=$?
-diff -r "$earlier" "$folder" --exclude=unfinished || exit 78
+diff -r "$earlier" "$folder" --exclude='unfinished*' || exit 78
 exit $status
 """
 
@@ -144,6 +145,12 @@ class TestTables(BadDayTest):
                 sentence = f"^case: .*line 2: {column} = {value} must be a"
                 self.ends(self.run_row("case.py", column, value), 1, sentence)
 
+    def test_description_that_would_lead_elsewhere_is_refused(self):
+        table = scratch() / "descriptions.table"
+        table.write_text("description beta\n.. 3\n")
+        process = start("deploy.py", *SMALL, YADE_BATCH=f"{table}:2")
+        self.ends(process, 1, "^deploy: description = '..' must be the name of a folder")
+
 
 class TestMissingPackages(BadDayTest):
     def without(self, *packages):
@@ -195,11 +202,12 @@ class TestEarlierResults(BadDayTest):
         self.assertFalse((self.folder / UNFINISHED).exists())
 
     def test_control_c_leaves_them_whole(self):
-        # In the spin-up, and in the run.
+        # In the spin-up, where nothing is worth keeping, and in the run.
         for script, wanted, options in (
             ("deploy.py", "spin-up", ENDLESS),
             ("deploy.py", "deploying", ENDLESS),
             ("sail.py", "deploying", [PATTERN, "--size", "0.05", "--duration", "20"]),
+            ("ikaros.py", "deploying", ["--fold-lines", "4", "--duration", "1000"]),
         ):
             process = start(script, *options, "--out", self.folder)
             said = ""
@@ -209,6 +217,20 @@ class TestEarlierResults(BadDayTest):
                 said += line
             process.send_signal(signal.SIGINT)
             self.ends(process, STOPPED, "stopped by Ctrl-C")
+            kept = self.folder / UNFINISHED / LAST_GOOD
+            self.assertEqual(kept.exists(), wanted == "deploying")
+            if kept.exists():
+                self.goes_on(kept)
+
+    def goes_on(self, kept):
+        """A saved state is that of a sail that moves, and can be run on."""
+        O.load(str(kept), quiet=True)
+        time, step = O.time, O.iter
+        self.assertGreater(step, 0)
+        scene.advance(100)
+        self.assertAlmostEqual(O.time, time + 100 * O.dt)
+        self.assertGreater(scene.loaded().ledger.kinetic, 0)
+        O.reset()
 
     def test_sigterm_and_the_end_of_the_terminal_leave_them_whole(self):
         for number in (signal.SIGTERM, signal.SIGHUP):
@@ -218,14 +240,14 @@ class TestEarlierResults(BadDayTest):
             while "deploying" not in process.stderr.readline():
                 self.assertIsNone(process.poll())
             process.send_signal(number)
-            self.ends(process, TERMINATED, "^deploy: terminated")
+            self.ends(process, TERMINATED, f"^deploy: terminated. The last good .*{LAST_GOOD}")
 
-    def check_on_disk(self, size, mode, sentence):
+    def check_on_disk(self, size, mode, sentence, script="deploy.py", out="", options=SHORT):
         """How a run ends on a file system of its own, where earlier results are, too."""
         place = scratch() / "disk"
         place.mkdir(exist_ok=True)
-        deploy = ["yade", "-n", "-x", SCRIPTS / "deploy.py", *SHORT, "--out", place]
-        mounted = ["sh", "-c", ON_SMALL_DISK, "sh", place, size, earlier(), mode, *deploy]
+        run = ["yade", "-n", "-x", SCRIPTS / script, *options, "--out", place / out]
+        mounted = ["sh", "-c", ON_SMALL_DISK, "sh", place, size, earlier(), mode, *run]
         done = subprocess.run(
             ["unshare", "--map-root-user", "--mount", *map(str, mounted)],
             env=yade_environment(),
@@ -237,13 +259,45 @@ class TestEarlierResults(BadDayTest):
         self.ended(done.returncode, done.stderr, 1, sentence)
 
     def test_full_disk_leaves_them_whole(self):
+        for room in (1, 40):
+            sentence = "^deploy: .*[Nn]o space left on device"
+            self.check_on_disk(self.leaving(room), "rw", sentence)
+
+    def leaving(self, room):
+        """Size of a disk that leaves so many pages of 4 KiB beside the earlier results."""
         files = sum(path.stat().st_size // 4096 + 1 for path in earlier().rglob("*"))
-        for room in (1, 40):  # pages
-            size = f"{4 * (files + room)}k"
-            self.check_on_disk(size, "rw", "^deploy: .*[Nn]o space left on device")
+        return f"{4 * (files + room)}k"
+
+    def test_full_disk_ends_a_case_that_saves_itself(self):
+        options = [*SMALL, "--duration", "0.02", "--checkpoint-every", "0", "--no-pictures"]
+        for room in (2, 20):
+            sentence = "^case: .*checkpoint.*[Nn]o space left on device"
+            where = {"script": "case.py", "out": UNFINISHED, "options": options}
+            self.check_on_disk(self.leaving(room), "rw", sentence, **where)
 
     def test_read_only_disk_leaves_them_whole(self):
         self.check_on_disk("8m", "ro", "^deploy: .*Read-only file system")
+
+
+class TestReadOnlyBuild(BadDayTest):
+    @unittest.skipUnless((ROOT / "build" / "python").is_dir(), "the build is elsewhere")
+    def test_without_a_home_settings_go_to_a_folder_of_the_users(self):
+        read_only = 'mount --bind "$0" "$0" && mount -o remount,bind,ro "$0" || exit 77; exec "$@"'
+        report = [SCRIPTS / "run.sh", "report", scratch() / "nowhere"]
+        inside = ["sh", "-c", read_only, ROOT / "build", *report]
+        environment = {**os.environ, "TMPDIR": str(scratch())}
+        environment.pop("HOME", None)
+        done = subprocess.run(
+            ["unshare", "--map-root-user", "--mount", *map(str, inside)],
+            env=environment,
+            capture_output=True,
+            text=True,
+        )
+        if done.returncode == 77 or done.stderr.startswith("unshare"):
+            self.skipTest("no file system can be mounted here")
+        self.ended(done.returncode, done.stderr, 1, "^report: .*nowhere/summary.json|viewer")
+        (home,) = scratch().glob("membrane-home-*")
+        self.assertEqual(home.stat().st_mode & 0o777, 0o700)
 
 
 class TestOutput(BadDayTest):

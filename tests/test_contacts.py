@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Grains, floors and walls beside a membrane: YADE's own contacts, on both paths."""
 
+import contextlib
+import io
 import unittest
 
 import membrane
@@ -60,7 +62,7 @@ def contacts():
 
 class TestGrains(SceneTest):
     def strike(self, path, **options):
-        """A ball strikes a free sheet at rest and bounces off; gives what is kept, before and after.
+        """A ball strikes a free sheet and bounces off; gives what is kept, before and after.
 
         Momentum, angular momentum about the origin, energy; and how often they touched.
         """
@@ -249,6 +251,50 @@ class TestFloors(SceneTest):
         made.newton.dead = made.resetter.dead = False
         scene.advance(2)
         self.assertLess(grain.state.pos[2], 0.1)
+
+    def test_a_body_that_is_no_node_cannot_be_named(self):
+        net = sheet("law2")
+        grain = ball(0, 0, 0.1, material=steel())
+        with self.assertRaisesRegex(ValueError, f"body #{grain.id} is no node of the membrane"):
+            scene.set_engines(net, touching=[0, grain.id])
+
+    def test_a_body_that_nothing_touches_is_told(self):
+        net = sheet("law2")
+        grain = ball(0, 0, 0.1, material=steel())
+        said = io.StringIO()
+        with contextlib.redirect_stderr(said):
+            scene.set_engines(net, touching=[0])
+            self.assertEqual(said.getvalue(), "")
+            scene.set_engines(net)
+        self.assertIn(f"nothing of the membrane touches body #{grain.id}", said.getvalue())
+
+    def test_nodes_that_would_touch_like_grains_are_refused(self):
+        """As where a loop is made by hand, without the functor of two nodes."""
+        net = sheet("fused", radius=0.02)
+        forces = membrane.MembraneIntegrator(membrane=net)
+        for i in net.bodyIds:
+            O.bodies[i].bounded = True
+        loop = yade.InteractionLoop(
+            ordinary.geometry(),
+            [yade.Ip2_FrictMat_FrictMat_FrictPhys()],
+            [yade.Law2_ScGeom_FrictPhys_CundallStrack()],
+        )
+        O.engines = [
+            yade.ForceResetter(),
+            ordinary.collider(1),
+            loop,
+            forces,
+            yade.NewtonIntegrator(damping=0, mask=1),
+        ]
+        O.dt = 0.01 * forces.criticalTimeStep()
+        with self.assertRaisesRegex(RuntimeError, "nodes of one membrane, touch like grains; put"):
+            O.step()
+        node_pairs = membrane.Ig2_MembraneNode_MembraneNode_MembraneGeom()
+        loop.geomDispatcher.functors = [*loop.geomDispatcher.functors, node_pairs]
+        O.interactions.clear()
+        for _ in range(3):
+            O.step()
+        self.assertEqual(contacts(), [])
 
     def test_every_functor_of_contact_is_listed(self):
         loop = yade.InteractionLoop(ordinary.geometry(), [], [])

@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The further scenes as a user runs them: IKAROS on its free hub, the spinning disk."""
 
+import importlib
 import json
 import re
+import sys
 import unittest
+from dataclasses import replace
 
+from membrane import sail
 from membrane.output import read_history
-from support import ROOT, CommandTest, long, run_yade, scratch
+from support import O, ROOT, CommandTest, long, quiet, run_yade, scratch
 
 
 class TestIkaros(CommandTest):
@@ -28,6 +32,23 @@ class TestIkaros(CommandTest):
         self.assertGreater(found["largest_change_of_hub_energy"], 1e-2 * energy)
         self.assertLess(found["largest_unexplained_energy"], 1e-4 * energy)
         self.assertGreater((folder / "ikaros.png").stat().st_size, 50_000)
+        self.assertEqual(found["versions"], sail.versions())
+
+    def test_a_run_that_goes_wrong_leaves_its_last_good_state(self):
+        """The watch is told to stop at what is rounding."""
+        O.reset()
+        sys.path.append(str(ROOT / "scripts"))
+        ikaros = importlib.import_module("ikaros")
+        folder = scratch() / "ikaros_wrong"
+        folder.mkdir()
+        strict = {"energy_tolerance": 1e-9, "spin_up_tolerance": 1e-2, "duration": 6.0}
+        with quiet(), self.assertRaises(sail.Diverged) as caught:
+            ikaros.deploy(replace(ikaros.IKAROS, fold_lines=4, **strict), 5.0, folder)
+        self.assertIn("from nowhere", str(caught.exception))
+        self.assertIn(str(folder / sail.LAST_GOOD), str(caught.exception))
+        O.load(str(folder / sail.LAST_GOOD), quiet=True)
+        self.assertGreater(O.iter, 0)
+        O.reset()
 
     def test_bad_values_end_with_one_sentence(self):
         for option, said in (
@@ -39,14 +60,27 @@ class TestIkaros(CommandTest):
 
 
 class TestGuide(unittest.TestCase):
-    def test_its_own_mesh_opens_and_keeps_its_energy(self):
-        text = (ROOT / "reference" / "guide.md").read_text()
-        script = scratch() / "sheet.py"
-        section = text.split("\n## 5. Your own mesh\n")[1]
-        script.write_text(section.split("```python\n")[1].split("```")[0])
+    def run_script(self, heading):
+        """Run the first script below a heading of the guide; gives what it prints."""
+        text = (ROOT / "reference" / "guide.md").read_text(encoding="utf-8")
+        script = scratch() / "of_the_guide.py"
+        section = text.split(f"\n{heading}\n")[1]
+        script.write_text(section.split("```python\n")[1].split("```")[0], encoding="utf-8")
         done = run_yade(script, folder=scratch())
         self.assertEqual(done.returncode, 0, done.stderr)
-        said = re.search(r"opened to (\d+) degrees; energy from nowhere (\S+) J", done.stdout)
+        return done.stdout
+
+    def test_balls_lie_on_a_sheet_on_a_floor(self):
+        said = self.run_script("### Other bodies: balls and a floor")
+        heights = re.findall(r"sheet at (\S+) mm, ball at (\S+) mm", said)
+        self.assertEqual(len(heights), 6, said)
+        sheet, ball = map(float, heights[-1])
+        self.assertAlmostEqual(sheet, -17, delta=0.5)  # a node's radius above the floor
+        self.assertAlmostEqual(ball, -17 + 13, delta=5)  # both radii above that, or bouncing
+
+    def test_its_own_mesh_opens_and_keeps_its_energy(self):
+        said = self.run_script("## 5. Your own mesh")
+        said = re.search(r"opened to (\d+) degrees; energy from nowhere (\S+) J", said)
         self.assertGreater(int(said[1]), 120)  # from 60
         self.assertLess(abs(float(said[2])), 1e-3)  # of some 0.03 J
         self.assertEqual(len(list((scratch() / "sheet").glob("*.vtu"))), 40)

@@ -69,6 +69,13 @@ class TestReading(unittest.TestCase):
         self.assertEqual((frame.edges, frame.letters, frame.angles), (None, None, None))
         self.assertEqual(len(frame.faces), 2)
 
+    def test_specification_may_be_a_text_and_angles_may_be_rounded(self):
+        for spec in (1, 1.1, "1.1", "1", "1.2"):
+            changed = {**PATCH, "file_spec": spec, "edges_assignment": [*"BBBBU"]}
+            for angle, taken in ((180.00000000000003, 180), (-180.0000001, -180), (12.5, 12.5)):
+                changed["edges_foldAngle"] = [0, 0, 0, 0, angle]
+                self.assertEqual(read_fold(written(changed)).frames[0].angles[4], taken)
+
     def test_units_are_those_of_the_specification(self):
         self.assertAlmostEqual(UNITS["in"], 25.4 * UNITS["mm"])
         self.assertAlmostEqual(UNITS["pt"] * 72, UNITS["in"])
@@ -121,6 +128,10 @@ class TestReading(unittest.TestCase):
             ({"vertices_coords": [[0, nan]]}, ("NaN",)),
             ({"vertices_coords": 7}, ("vertices_coords", "must be a list")),
             ({"file_spec": 3}, ("file_spec", "specifications 1 to 1.2")),
+            ({"file_spec": "2.0"}, ("file_spec", "'2.0'", "specifications 1 to 1.2")),
+            ({"file_spec": "new"}, ("file_spec", "'new'", "specifications 1 to 1.2")),
+            ({"file_spec": "nan"}, ("file_spec", "'nan'", "specifications 1 to 1.2")),
+            ({"edges_foldAngle": [0, 0, 0, 0, -180.001]}, ("edges_foldAngle[4]", "-180.001")),
             ({"file_frames": [{"frame_parent": 5}]}, ("file_frames[0].frame_parent", "5")),
             ({"file_frames": [{"frame_inherit": True}]}, ("frame_parent", "missing")),
             ({"file_frames": [3]}, ("file_frames[0]", "objects")),

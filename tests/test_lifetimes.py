@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Membranes and engines that outlive their scene, saved attributes that nobody saved, lists that were changed."""
+"""Membranes and engines that outlive their scene, and saved attributes that nobody saved."""
 
 import unittest
 from functools import lru_cache

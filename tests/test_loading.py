@@ -9,11 +9,39 @@ from pathlib import Path
 import membrane
 import yade.config
 from membrane import _load
+from support import run_yade, scratch
 from yade import wrapper
 
 TABLES = tuple(
     f"fields_of_{thing}" for thing in ("body", "interaction", "engine", "drawer", "scene")
 )
+
+
+LATE = """
+from yade import utils
+from yade.wrapper import *
+O = Omega()
+O.bodies.append(utils.sphere((0, 0, 0.0148), 0.01))
+O.engines = [
+    ForceResetter(),
+    InsertionSortCollider([Bo1_Sphere_Aabb()]),
+    InteractionLoop(
+        [Ig2_Sphere_Sphere_ScGeom()],
+        [Ip2_FrictMat_FrictMat_FrictPhys()],
+        [Law2_ScGeom_FrictPhys_CundallStrack()],
+    ),
+    NewtonIntegrator(),
+]
+O.dt = 1e-7
+O.step()
+from membrane import scene
+corners = [(0, 0, 0), (0.1, 0, 0), (0, 0.1, 0)]
+net = scene.add_membrane(corners, [(0, 1, 2)], radius=0.005, interactions=False)
+for i in net.bodyIds:
+    O.bodies[i].bounded = True
+O.step()
+print("contacts:", sum(i.isReal for i in O.interactions))
+"""
 
 
 class OneFieldOff:
@@ -128,6 +156,14 @@ class TestVersion(unittest.TestCase):
     def test_loading_again_gives_the_same_classes(self):
         for name, cls in _load.load().items():
             self.assertIs(cls, getattr(membrane, name))
+
+    def test_engines_that_were_there_before_meet_nodes(self):
+        """YADE's tables of classes are as large as they were, and asserted to be large enough."""
+        script = scratch() / "late.py"
+        script.write_text(LATE, encoding="utf-8")
+        done = run_yade(script)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("contacts: 1", done.stdout)
 
     def test_plain_python_is_told_to_use_yade(self):
         folder = str(Path(membrane.__file__).parents[1])

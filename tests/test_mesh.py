@@ -6,6 +6,7 @@ from collections import Counter
 
 import numpy as np
 from membrane import geometry, measures
+from membrane.fold import fold
 from membrane.mesh import LINE_KINDS, sail_mesh, sheet_mesh
 
 OUTER, INNER, STRIP = 0.455, 0.103, 0.022
@@ -333,6 +334,65 @@ class TestGeometry(unittest.TestCase):
         for scale in (1e-6, 1.0, 1e6):
             found = geometry.crossings(scale * nodes, sides, np.array([[0, 1, 2]]))
             np.testing.assert_array_equal(found, [[0, 0]])
+
+    def test_crossings_are_those_of_every_pair_looked_at(self):
+        """In layers, in a crumpled sheet and with sides of very different lengths."""
+        rng = np.random.default_rng(8)
+        mesh = sail_mesh(fold_lines=3, inner_width=0.15)
+        film, triangles = mesh.nodes[: mesh.film_size], mesh.triangles
+        sides = geometry.unique_sides(triangles)[0]
+        folded = fold(mesh)[: mesh.film_size]
+        for x in (
+            folded + 2e-4 * rng.normal(size=film.shape),
+            film + 0.03 * rng.normal(size=film.shape),
+            (film + 0.03 * rng.normal(size=film.shape)) * [100, 1, 1e-3],
+            np.exp(1.5 * rng.normal(size=film.shape)),
+        ):
+            found = geometry.crossings(x, sides, triangles)
+            self.assertGreater(len(found), 50)
+            np.testing.assert_array_equal(found, _all_crossings(x, sides, triangles))
+        self.assertEqual(len(geometry.crossings(folded, sides, triangles)), 0)
+        self.assertEqual(geometry.crossings(film, sides[:0], triangles).shape, (0, 2))
+
+
+def _all_crossings(nodes, sides, triangles):
+    """What `geometry.crossings` gives, from a linear system for each pair."""
+    found = []
+    for i, (a, b) in enumerate(sides):
+        others = np.flatnonzero(~np.isin(triangles, (a, b)).any(axis=1))
+        p, q, r = nodes[triangles[others].T]
+        along = np.broadcast_to(nodes[a] - nodes[b], p.shape)
+        columns = np.stack([along, q - p, r - p], axis=-1)
+        s, u, v = np.linalg.solve(columns, nodes[a] - p).T
+        within = (0 < s) & (s < 1) & (u > 0) & (v > 0) & (u + v < 1)
+        found += [(i, k) for k in others[within]]
+    return found
+
+    def test_quadrangles_are_cut_along_the_better_diagonal(self):
+        nodes = np.array(
+            [(0, 0, 0), (3, 0, 0), (3, 1, 0), (0, 1, 0)]  # either way the same
+            + [(0, 0, 0), (1, 0, 0), (1.5, 0.8, 0), (0.5, 0.8, 0)]  # a rhomb, nearly
+            + [(0, 0, 0), (2, -1, 0), (0.5, 0, 0), (2, 1, 0)]  # with a corner that points inwards
+            + [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)]  # no quadrangle: its sides cross
+        )
+        quads = np.arange(16).reshape(4, 4)
+        for scale in (1e-6, 1e6):
+            for first in range(4):
+                for quad, cut in (
+                    (quads[1], {frozenset((5, 6, 7)), frozenset((4, 5, 7))}),
+                    (quads[2], {frozenset((8, 9, 10)), frozenset((8, 10, 11))}),
+                ):
+                    turned = np.roll(quad, first)[None]
+                    found = geometry.cut_quadrangles(scale * nodes, turned)
+                    self.assertEqual(set(map(frozenset, found.tolist())), cut)
+                    self.assertGreater(geometry.area_vectors(nodes, found)[:, 2].min(), 0)
+                    below = geometry.cut_quadrangles(scale * nodes, turned[:, ::-1])
+                    self.assertEqual(set(map(frozenset, below.tolist())), cut)
+                    self.assertLess(geometry.area_vectors(nodes, below)[:, 2].max(), 0)
+        found = geometry.cut_quadrangles(nodes + 1e-9 * np.sin(7 * nodes), quads[:1])
+        np.testing.assert_array_equal(found, [[0, 1, 2], [0, 2, 3]])
+        with self.assertRaisesRegex(ValueError, r"round \[0.5, 0.5, 0.0\] m cross"):
+            geometry.cut_quadrangles(nodes, quads)
 
 
 class TestMeasures(unittest.TestCase):

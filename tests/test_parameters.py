@@ -2,17 +2,23 @@
 """Parameters of the scene: tables of the paper, command line, batch tables."""
 
 import argparse
+import contextlib
+import io
 import json
 import re
 import subprocess
 import sys
 import unittest
 from dataclasses import fields
-from math import pi
+from math import inf, pi
 from unittest import mock
 
+import numpy as np
+from membrane import sail
+from membrane.commands import count
+from membrane.history import read_history
 from membrane.parameters import SailParameters, add_arguments, describe, from_arguments, parse
-from support import ROOT, long, scratch, yade_environment
+from support import O, ROOT, long, quiet, scratch, yade_environment
 
 # Tables 1 and 2 of the paper, and the defaults chosen among Table 2's.
 PAPER = {
@@ -83,6 +89,74 @@ class TestParameters(unittest.TestCase):
     def test_table_overrides_the_command_line(self):
         found = from_arguments(self.parse("--beta", "3"), {"beta": 0.0, "zeta": 0.1})
         self.assertEqual((found.beta, found.zeta), (0.0, 0.1))
+
+    def test_whole_numbers_may_have_a_point_or_an_exponent(self):
+        for word, value in (("36", 36), ("36.0", 36), ("1e3", 1000), ("+4", 4), ("3.6e1", 36)):
+            found = from_arguments(self.parse("--spool-facets", word)).spool_facets
+            self.assertEqual((type(found), found), (int, value))
+            table = from_arguments(self.parse(), {"spool_facets": float(word)}).spool_facets
+            self.assertEqual((type(table), table), (int, value))
+        self.assertEqual(count("2.0"), 2)
+
+    def test_other_words_for_whole_numbers_are_a_sentence(self):
+        for word, reason in (
+            ("36.5", "must be a whole number, not '36.5'"),
+            ("many", "must be a number, not 'many'"),
+            ("nan", "must be a whole number"),
+            ("1e400", "'1e400' is too large a number"),
+            ("9" * 5000, "9…' is too large|9… is too large"),
+            ("3e9", "'3e9' is too large a number"),
+        ):
+            with self.subTest(word=word[:9]), self.assertRaises(SystemExit):
+                said = io.StringIO()
+                with contextlib.redirect_stderr(said):
+                    try:
+                        self.parse("--spool-facets", word)
+                    finally:
+                        last = said.getvalue().splitlines()[-1]
+                        self.assertRegex(last, f"error: argument --spool-facets: .*({reason})")
+
+    def test_values_of_other_kinds_are_refused_and_the_right_ones_get_their_type(self):
+        for name, value, reason in (
+            ("exchange_period", 10**10, "exchange_period = 10000000000 is too large a number"),
+            ("exchange_period", 1e300, "is too large a number"),
+            ("zeta", True, "zeta = True must be a number"),
+            ("fold_lines", True, "fold_lines = True must be a number"),
+            ("force_time_step", 2, "force_time_step = 2 must be true or false"),
+            ("force_time_step", "no", "force_time_step = 'no' must be true or false"),
+            ("duration", inf, "duration = inf s must be >= 0 and finite"),
+        ):
+            with self.assertRaisesRegex(ValueError, reason):
+                SailParameters(**{name: value})
+        found = SailParameters(beta=3, fold_lines=7.0, force_time_step=1)
+        self.assertEqual(
+            repr((found.beta, found.fold_lines, found.force_time_step)), "(3.0, 7, True)"
+        )
+
+    def test_more_steps_than_can_be_counted_are_refused(self):
+        for changes in ({"duration": 1e308}, {"dt": 1e-320}, {"dt": 1e-18}):
+            with self.assertRaisesRegex(
+                ValueError, r"duration = .* s must be at most \d+ steps of dt"
+            ):
+                SailParameters(**changes)
+        SailParameters(duration=0.0, dt=1e-320)
+
+    def test_intervals_longer_than_the_run_leave_its_ends_and_do_not_lengthen_it(self):
+        folder, coarse = scratch() / "long_intervals", {"fold_lines": 3, "inner_width": 0.15}
+        long = {"history_interval": 1e308, "shapes_interval": 1e300, "spin_up_tolerance": 1e-2}
+        O.reset()
+        with quiet():
+            sail.deploy(SailParameters(duration=2e-3, **long, **coarse), folder, False, page=False)
+        np.testing.assert_allclose(read_history(folder / "history.csv")["time"], [0, 2e-3])
+        self.assertEqual(len(list((folder / "shapes").glob("film_*.vtu"))), 2)
+
+    def test_shapes_more_often_than_rows_come_with_every_row(self):
+        folder, coarse = scratch() / "short_intervals", {"fold_lines": 3, "inner_width": 0.15}
+        often = {"history_interval": 1e-3, "shapes_interval": 1e-4, "spin_up_tolerance": 1e-2}
+        O.reset()
+        with quiet():
+            sail.deploy(SailParameters(duration=3e-3, **often, **coarse), folder, False, page=False)
+        self.assertEqual(len(list((folder / "shapes").glob("film_*.vtu"))), 4)
 
     def test_unknown_name_in_a_table_is_refused(self):
         with self.assertRaisesRegex(ValueError, "betta is no parameter of the sail; known are"):

@@ -6,9 +6,10 @@ import unittest
 from functools import lru_cache
 
 import numpy as np
-from membrane import geometry, pattern_sail
+from membrane import Membrane, geometry, pattern_sail, scene
 from membrane.fold_format import FoldFile, FoldFrame, read_fold, write_fold
 from membrane.output import read_history
+from membrane.pattern_mesh import default_size
 from membrane.pattern_sail import PatternParameters, outline_corners
 from support import O, ROOT, CommandTest, SceneTest, gmsh_sheet, quiet, run_yade, scratch
 
@@ -185,6 +186,48 @@ class TestCommand(CommandTest):
         self.assertEqual(
             (again / "history.csv").read_bytes(), (folder / "history.csv").read_bytes()
         )
+
+    def test_quadrangles_that_one_diagonal_makes_too_flat_are_flown(self):
+        """Four quadrangles round a node off the middle, which the first diagonals would spoil."""
+        import meshio
+
+        points = [(x, y, 0.0) for y in (0, 0.1, 0.2) for x in (0, 0.1, 0.2)]
+        points[4] = (0.13, 0.13, 0.0)
+        quads = [(0, 1, 4, 3), (1, 2, 5, 4), (3, 4, 7, 6), (4, 5, 8, 7)]
+        spoilt = 0
+        for turn in range(4):
+            path = scratch() / "quads.msh"
+            corners = np.roll(quads, turn, axis=1)
+            meshio.Mesh(points, [("quad", corners)]).write(path, file_format="gmsh22")
+            p = PatternParameters()
+            O.reset()
+            sheet = pattern_sail.read_sheet(path, p)
+            pattern_sail.build(pattern_sail.place(sheet, p), p)
+            first = np.concatenate([corners[:, [0, 1, 2]], corners[:, [0, 2, 3]]])
+            try:
+                Membrane(material=scene.film(), nodes=points, triangles=first)
+            except ValueError as error:
+                spoilt += pattern_sail.REMESH in str(error)
+        self.assertGreater(spoilt, 0)
+
+    def test_a_pattern_is_meshed_finer_where_that_alone_makes_no_triangle_too_flat(self):
+        path = scratch() / "small_face.fold"
+        points = [(0, 0), (1, 0), (1, 0.5), (1, 1), (0.505, 1), (0, 1), (0, 0.5)]
+        points += [(0.5, 0.5), (0.51, 0.5), (0.505, 0.5015)]
+        edges = [(i, (i + 1) % 7) for i in range(7)] + [(6, 7), (8, 2), (9, 4)]
+        edges += [(7, 8), (8, 9), (9, 7)]
+        content = {"vertices_coords": points, "edges_vertices": edges, "frame_unit": "m"}
+        path.write_text(json.dumps({**content, "edges_assignment": [*"BBBBBBBVVVMMM"]}))
+        p = PatternParameters()
+        O.reset()
+        sheet = pattern_sail.read_sheet(path, p)
+        (note,) = sheet.notes
+        self.assertIn("with sides of 0.0537 m a triangle would be too flat", note)
+        self.assertIn("0.0269 m long", note)
+        self.assertIn(f"{len(sheet.triangles)} triangles", note)
+        pattern_sail.build(pattern_sail.place(sheet, p), p)
+        again = pattern_sail.read_sheet(path, PatternParameters(size=default_size(1.0) / 2))
+        self.assertEqual((again.notes, len(again.nodes)), ((), len(sheet.nodes)))
 
     def test_narrow_corner_is_refused_with_an_option_that_there_is(self):
         path = scratch() / "narrow.fold"

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from membrane import geometry, pattern_mesh
 from membrane.fold_format import FoldFile, FoldFrame
+from membrane.miura import miura
 from membrane.pattern_mesh import mean_value_coordinates, mesh_pattern
 from membrane.patterns import crease_pattern, find_faces, fold_by_angles, nearest_pose
 from support import rotation
@@ -76,7 +77,7 @@ class TestFaces(unittest.TestCase):
             ([*SQUARE, (1.5, 0)], [*square, (4, 2)], "BBBBM", "vertex 4 lies on the edge"),
             (SQUARE, square[:3], "BBB", "border .B. with the same face"),
             (SQUARE, square, "FFFF", "enclose no film"),
-            (SQUARE, [*square, (1, 0)], "BBBBB", "given 2 times"),
+            (SQUARE, [*square, (2, 0), (0, 2)], "BBBBMV", "edges 4 and 5 join .* as M, .* as V"),
             ([*SQUARE, (3, 0)], [*square, (1, 4)], "BBBBM", "no length"),
             (CUT, CUT_EDGES, "BBBBBB", "a cut is C"),
             (SQUARE, [*square, (0, 2)], "MBBBM", "round its faces do not close"),
@@ -87,8 +88,8 @@ class TestFaces(unittest.TestCase):
     def test_faces_that_contradict_the_edges_are_refused(self):
         edges, letters = [*ring(0, 4), (0, 2)], "BBBBM"
         for faces, words in (
-            ([[0, 1, 2], [0, 3, 2]], "runs clockwise"),
             ([[0, 1, 2], [2, 3, 1]], "no edge does"),
+            ([[0, 1, 2], [0, 2, 3], [0, 1, 2]], "lie on the same side of edge .: they overlap"),
             ([[0, 1, 2]], "crease .M. but has no face on one side"),
         ):
             loops = tuple(np.array(face) for face in faces)
@@ -116,6 +117,134 @@ class TestFaces(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "'unit'"):
             pattern_of(one)
         self.assertAlmostEqual(pattern_of(one, unit=0.1).area, 0.09)
+
+
+class TestManyWays(unittest.TestCase):
+    """What programs write otherwise than others do, and what is meant by it."""
+
+    # An L of three squares, so that no mirror maps it onto itself; two creases.
+    POINTS = [(0, 0), (1, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2), (0, 1)]
+    EDGES = [*ring(0, 8), (1, 4), (4, 7)]
+    FACES = ([0, 1, 4, 7], [1, 2, 3, 4], [4, 5, 6, 7])
+    ANGLES = np.array([0.0] * 8 + [70, -35])
+
+    def sheet(self, points=None, faces=None, **more):
+        loops = self.FACES if faces is None else faces
+        given = {"faces": tuple(map(np.array, loops)), "angles": self.ANGLES, **more}
+        return frame(self.POINTS if points is None else points, self.EDGES, "B" * 8 + "VM", **given)
+
+    def test_faces_that_run_clockwise_show_the_lower_side(self):
+        """As of Oriedita, whose y axis points downwards: mountain and valley are seen from there.
+
+        The sheet is turned over, not mirrored.
+        """
+        clockwise = pattern_of(self.sheet(faces=[face[::-1] for face in self.FACES]))
+        below = [(x, -y) for x, y in self.POINTS]
+        expected = pattern_of(self.sheet(below, [face[::-1] for face in self.FACES]))
+        np.testing.assert_array_equal(clockwise.vertices, expected.vertices)
+        np.testing.assert_array_equal(clockwise.folded, expected.folded)
+        self.assertEqual(clockwise.notes, ())
+        self.assertAlmostEqual(clockwise.area, 3)
+        upright = pattern_of(self.sheet())
+        back = nearest_pose(clockwise.vertices, upright.vertices)
+        np.testing.assert_allclose(back, upright.vertices, atol=1e-12)
+        # Folded as the letters say, but seen from below: no rotation makes the two alike.
+        other = nearest_pose(clockwise.folded, upright.folded)
+        self.assertGreater(np.abs(other - upright.folded).max(), 0.1)
+        mesh = mesh_pattern(clockwise, 0.3)
+        angles = geometry.crease_angles(mesh.start, mesh.triangles, mesh.creases, mesh.crease_signs)
+        bent = {geometry.VALLEY: 180 - 70, geometry.MOUNTAIN: 180 - 35}
+        np.testing.assert_allclose(np.degrees(angles), [bent[s] for s in mesh.crease_signs])
+
+    def test_faces_that_disagree_are_made_to_agree_and_told(self):
+        right = pattern_of(self.sheet())
+        for turned in ([0], [1], [2]):
+            faces = [f[::-1] if i in turned else f for i, f in enumerate(self.FACES)]
+            found = pattern_of(self.sheet(faces=faces))
+            np.testing.assert_array_equal(found.folded, right.folded)
+            self.assertIn("1 of 3 faces run the other way round", found.notes[0])
+        below = pattern_of(self.sheet(faces=[self.FACES[0], *(f[::-1] for f in self.FACES[1:])]))
+        all_below = pattern_of(self.sheet(faces=[face[::-1] for face in self.FACES]))
+        np.testing.assert_array_equal(below.folded, all_below.folded)
+
+    def test_a_surface_with_one_side_is_refused(self):
+        """A Moebius strip of twelve quadrangles."""
+        turns = 2 * np.pi * np.arange(12) / 12
+        out = np.column_stack([np.cos(turns), np.sin(turns), 0 * turns])
+        across = np.cos(turns / 2)[:, None] * out + np.sin(turns / 2)[:, None] * [0, 0, 1]
+        points = np.concatenate([3 * out - 0.4 * across, 3 * out + 0.4 * across])
+        faces = [(i, i + 1, i + 13, i + 12) for i in range(11)] + [(11, 12, 0, 23)]
+        sides = {frozenset(side) for f in faces for side in zip(f, (*f[1:], f[0]))}
+        letters = ["V" if abs(a - b) == 12 else "B" for a, b in sides]
+        loops = tuple(map(np.array, faces))
+        strip = frame(points, [*map(list, sides)], letters, faces=loops, classes=("foldedForm",))
+        with self.assertRaisesRegex(ValueError, "one side only, as a Moebius strip"):
+            pattern_of(strip)
+
+    def test_a_pattern_in_any_plane_is_a_flat_pattern(self):
+        flat, turn = pattern_of(self.sheet()), rotation(np.random.default_rng(6))
+        for matrix in (turn, -turn @ np.diag([1, 1, -1]), np.eye(3)[[0, 2, 1]], np.eye(3)):
+            points = flat.vertices @ matrix.T + [1, 2, 3]
+            found = pattern_of(self.sheet(points))
+            self.assertEqual(np.ptp(found.vertices[:, 2]), 0)
+            for one, two in ((found.vertices, flat.vertices), (found.folded, flat.folded)):
+                np.testing.assert_allclose(nearest_pose(one, two), two, atol=1e-12)
+            alone = pattern_of(replace(self.sheet(points), faces=None, angles=None))
+            self.assertAlmostEqual(alone.area, 3)
+
+    def test_vertices_on_one_another_are_one_and_named(self):
+        """Where faces say what hangs together, they stay two: a slit is meant."""
+        points, edges = [*self.POINTS, (1 + 2e-7, 1)], [*ring(0, 8), (1, 8), (4, 7)]
+        bent = replace(frame(points, edges, "B" * 8 + "VM"), angles=self.ANGLES)
+        found = pattern_of(bent)
+        self.assertEqual(
+            found.notes, ("vertices 4 and 8 lie 2e-07 m apart: they are taken as one",)
+        )
+        np.testing.assert_array_equal(found.folded[:8], pattern_of(self.sheet(faces=[])).folded)
+        near = frame([*self.POINTS, (1 - 5e-6, 1 - 5e-6)], edges, "B" * 8 + "VM")
+        self.assertEqual(pattern_of(near).notes, ())
+        # A side between the two goes with them.
+        kink = [*ring(0, 5), (5, 6), (6, 7), (7, 0), (1, 4), (4, 7)]
+        kink[4] = (4, 8)
+        kink.insert(5, (8, 5))
+        tiny = pattern_of(frame(points, kink, "B" * 9 + "VM"))
+        self.assertEqual((tiny.area, len(tiny.edges)), (3, 10))
+        slit = [*self.POINTS, (1, 1)]
+        faces = [[0, 1, 4, 7], [1, 2, 3, 4], [8, 5, 6, 7]]
+        edges = [(0, 1), (1, 2), (2, 3), (3, 4), (8, 5), (5, 6), (6, 7), (7, 0)]
+        edges += [(1, 4), (4, 7), (8, 7)]
+        open_slit = frame(slit, edges, "BBBBBBBBVBB", faces=tuple(map(np.array, faces)))
+        with self.assertRaisesRegex(ValueError, "pieces: .* vertices 4 and 8 lie 0 m apart"):
+            pattern_of(open_slit)
+
+    def test_an_edge_given_twice_counts_once(self):
+        again = [*self.EDGES, (4, 1)]
+        twice = frame(self.POINTS, again, "B" * 8 + "VMV", angles=np.array([*self.ANGLES, 70]))
+        once = pattern_of(self.sheet(faces=[]))
+        np.testing.assert_array_equal(pattern_of(twice).edges, once.edges)
+        np.testing.assert_array_equal(pattern_of(twice).folded, once.folded)
+        for letters, angle, words in (
+            ("VMV", 60, "edges 8 and 10 join the same vertices, bent by 70 and by 60 degrees"),
+            ("VMF", 70, "edges 8 and 10 join the same vertices, one as V, the other as F"),
+        ):
+            other = replace(twice, letters=np.array([*"B" * 8, *letters]))
+            with self.assertRaisesRegex(ValueError, words):
+                pattern_of(replace(other, angles=np.array([*self.ANGLES, angle])))
+
+    def test_the_border_cannot_fold_whatever_its_letter(self):
+        every = replace(self.sheet(), letters=np.array([*"MMMMVVVV", *"VM"]))
+        found = pattern_of(every)
+        self.assertEqual("".join(found.letters), "B" * 8 + "VM")
+        self.assertIn("edge 0 (M) and 7 more cannot fold", found.notes[0])
+
+    def test_a_crease_that_ends_inside_a_face_cannot_be_bent(self):
+        points, edges = [*self.POINTS, (0.3, 0.3), (0.6, 0.6)], [*self.EDGES, (8, 9)]
+        angles = np.array([*self.ANGLES, 20])
+        dangling = frame(points, edges, "B" * 8 + "VMV", angles=angles)
+        with self.assertRaisesRegex(
+            ValueError, r"edge 10 \(V\) ends inside face \d, .* 20 degrees"
+        ):
+            pattern_of(dangling)
 
 
 class TestMesh(unittest.TestCase):
@@ -312,6 +441,40 @@ class TestFoldedStart(unittest.TestCase):
         np.testing.assert_array_equal(found.folded, turned)
         self.assertGreater(found.area, 0)
 
+    def test_a_folded_form_within_one_percent_unrolls(self):
+        """A sheet of 10 x 10 faces, its vertices shaken; errors do not add up along its faces."""
+        flat, form = miura(columns=10, rows=10).frames
+        rng, exact = np.random.default_rng(3), pattern_of(form)
+        sides = exact.vertices[exact.edges]
+        lengths = geometry.side_lengths(exact.vertices, exact.edges)
+        np.testing.assert_allclose(lengths, geometry.side_lengths(flat.coords, flat.edges))
+        noise = rng.normal(size=form.coords.shape)
+        noise /= np.abs(
+            np.einsum(
+                "ei,ei->e", np.diff(noise[exact.edges], axis=1)[:, 0], np.diff(sides, axis=1)[:, 0]
+            )
+            / lengths**2
+        ).max()
+        shaken = replace(form, coords=form.coords + 0.008 * noise)
+        found = pattern_of(shaken)
+        np.testing.assert_array_equal(found.folded, shaken.coords)
+        now = geometry.side_lengths(found.vertices, found.edges)
+        rest = geometry.side_lengths(shaken.coords, found.edges)
+        self.assertLess(np.abs(now / rest - 1).max(), 0.0101)
+        off = nearest_pose(found.vertices, flat.coords) - flat.coords
+        self.assertLess(np.abs(off).max(), 0.03 * exact.size)
+        with self.assertRaisesRegex(ValueError, "does not unroll into the plane: edge .* longer"):
+            pattern_of(replace(form, coords=form.coords + 0.05 * noise))
+
+    def test_what_has_no_flat_form_is_refused(self):
+        """A pyramid of four triangles, whose angles at the apex do not make a full turn."""
+        points = [(0, 0, 0.5), (1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0)]
+        edges = [*ring(1, 4), *((0, i) for i in range(1, 5))]
+        faces = tuple(np.array([0, i, i % 4 + 1]) for i in range(1, 5))
+        peak = frame(points, edges, "BBBBMMMM", faces=faces, classes=("foldedForm",))
+        with self.assertRaisesRegex(ValueError, "does not unroll"):
+            pattern_of(peak)
+
     def test_a_stretched_folded_form_is_refused(self):
         pattern = pattern_of(self.strip(50, 0))
         form = replace(self.strip(50, 0), coords=1.02 * pattern.folded, classes=("foldedForm",))
@@ -331,6 +494,19 @@ class TestFoldedStart(unittest.TestCase):
                 pattern_of(flat, form, start=1)
         moved = replace(flat, coords=flat.coords[:, [1, 2, 0]])  # not folded at all
         self.assertIsNotNone(pattern_of(flat, moved, start=1).folded)
+
+    def test_angles_in_radians_are_doubted(self):
+        (said,) = pattern_of(self.strip(1.5, -np.pi)).notes
+        self.assertIn("are they in radians? FOLD has degrees", said)
+        for few in ((3.2, -1), (0, 0)):
+            self.assertEqual(pattern_of(self.strip(*few)).notes, ())
+        points, edges = [*SQUARE, (1.5, 1.5)], [*ring(0, 4), *((4, i) for i in range(4))]
+        angles = np.array([0.0, 0, 0, 0, 1, 1.5, 1, 1.5])
+        with self.assertRaisesRegex(ValueError, "do not go together: .*; .* in radians"):
+            pattern_of(frame(points, edges, "BBBBVVVV", angles=angles))
+        form = replace(self.strip(1.5, -1), coords=pattern_of(self.strip(1.5, -1)).folded)
+        nearly_flat = pattern_of(self.strip(1.5, -1), replace(form, classes=("foldedForm",)))
+        self.assertEqual(nearly_flat.notes, ())
 
     def test_a_folded_form_of_another_sheet_is_passed_over(self):
         flat = replace(self.strip(50, 0), angles=None)

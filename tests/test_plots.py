@@ -103,7 +103,9 @@ class TestHistory(unittest.TestCase):
     def test_a_curve_that_stays_where_it_is_stands_clear_of_the_frame(self):
         history = {"time": [0.0, 0.1, 0.2], "area": [0.999, 1.0, 0.999], "none": [0.0, 0.0, 0.0]}
         with mock.patch.object(Figure, "savefig", autospec=True) as save:
-            plots.plot_history(history, {"area": "area [-]", "none": "none [-]"}, "no.png")
+            plots.plot_history(
+                history, {"area": "area [-]", "none": "none [-]"}, scratch() / "no.png"
+            )
         figure = save.call_args[0][0]
         for axes, top in zip(figure.axes, (1.0, 0.0)):
             low, high = axes.get_ylim()

@@ -2,6 +2,7 @@
 """report.html: what it holds of a run, and how it behaves in a browser without a screen."""
 
 import base64
+import html
 import io
 import json
 import re
@@ -14,8 +15,9 @@ from unittest import mock
 
 import numpy as np
 from matplotlib import colormaps
+from matplotlib.figure import Figure
 from matplotlib.image import imread
-from membrane import report, sail
+from membrane import plots, report, sail
 from membrane.geometry import crease_angles
 from membrane.mesh import sail_mesh
 from membrane.output import list_series, read_frame, read_history
@@ -25,6 +27,8 @@ from support import ROOT, CommandTest, free_hub_run, pattern_run, scratch, short
 sys.path.append(str(ROOT / "scripts"))
 
 from sweeping.page import render  # noqa: E402  (found only now)
+from sweeping.report import report as sweeping_report  # noqa: E402
+from test_sweep import two_cases  # noqa: E402
 
 try:
     from selenium import webdriver
@@ -314,6 +318,41 @@ class TestReportInBrowser(unittest.TestCase):
             if message["message"]["method"] == "Network.requestWillBeSent"
         ]
         self.assertEqual(asked, [self.page.as_uri()])
+
+    def test_links_of_a_sweep_lead_to_the_case_whatever_it_is_called(self):
+        folder = scratch() / "odd_names"
+        (case,) = (two_cases() / "cases").glob("alpha_crease_10-*")
+        names = ("javascript:document.title='run'", "a#b?c%20d", "<b>&\"'", "-ä x")
+        for name in names:
+            shutil.copytree(case, folder / name)
+            (folder / name / "report.html").write_text(f"<meta charset=utf-8>{html.escape(name)}")
+            plots.save(Figure(figsize=(1, 1)), folder / name / "shapes.png")
+        sweeping_report(folder)
+        page = folder / "report.html"
+        self.driver.get(page.as_uri())
+        count = len(self.driver.find_elements(By.CSS_SELECTOR, "td a"))
+        self.assertEqual(count, len(names))
+        for image in self.driver.find_elements(By.TAG_NAME, "img"):
+            self.driver.execute_script("arguments[0].loading = 'eager';", image)
+            self.await_(lambda: int(image.get_attribute("naturalWidth")) > 0)
+        for number in range(count):
+            self.driver.get(page.as_uri())
+            link = self.driver.find_elements(By.CSS_SELECTOR, "td a")[number]
+            name = link.text
+            link.click()
+            self.await_(lambda: self.driver.current_url != page.as_uri())
+            self.assertEqual(self.driver.find_element(By.TAG_NAME, "body").text, name)
+
+    def test_nothing_in_the_page_of_a_sweep_can_run(self):
+        folder = scratch() / "page_with_scripts"
+        shutil.copytree(two_cases(), folder)
+        sweeping_report(folder)
+        page = folder / "report.html"
+        script = "<script>document.title = 'run'</script><a id=x href=\"javascript:document.title="
+        page.write_text(page.read_text().replace("<h1>", script + "'run'\">x</a><h1>", 1))
+        self.driver.get(page.as_uri())
+        self.find("x").click()
+        self.assertRegex(self.driver.title, "^Sweep over")
 
     def test_error_in_a_page_would_be_seen(self):
         self.driver.get_log("browser")

@@ -5,6 +5,7 @@ import json
 import unittest
 from xml.etree import ElementTree
 
+import meshio
 import numpy as np
 from membrane.geometry import crease_angles, triangle_areas
 from membrane.mesh import sail_mesh
@@ -47,6 +48,18 @@ class TestShapes(unittest.TestCase):
         """Values (T, 3) of the sides of each triangle."""
         ends = [np.sort(np.delete(self.triangles, k, axis=1), axis=1) for k in range(3)]
         return np.array([[values[self.row[tuple(pair)]] for pair in e.tolist()] for e in ends]).T
+
+    def test_meshio_reads_the_same(self):
+        for name, kind, cells, fields in (
+            ("film", "triangle", self.triangles, self.film),
+            ("sides", "line", self.sides, self.lines),
+        ):
+            found = meshio.read(short_run() / "shapes" / f"{name}_{SHAPE:06d}.vtu")
+            np.testing.assert_array_equal(found.points, self.points)
+            np.testing.assert_array_equal(found.cells_dict[kind], cells)
+            self.assertEqual(set(found.cell_data), set(fields))
+            for field, (values,) in found.cell_data.items():
+                np.testing.assert_array_equal(values, fields[field])
 
     def test_every_field_is_explained_with_its_unit(self):
         told = json.loads((short_run() / "shapes" / "fields.json").read_text())

@@ -5,6 +5,7 @@ import csv
 import json
 import os
 import random
+import re
 import resource
 import shutil
 import signal
@@ -13,6 +14,7 @@ import sys
 import unittest
 from dataclasses import replace
 from functools import lru_cache, partial
+from pathlib import Path
 
 import numpy as np
 from membrane import report, sail
@@ -87,6 +89,17 @@ def rows(folder):
         return 0
 
 
+def cut(path):
+    """Cut off the last bytes of a file."""
+    os.truncate(path, path.stat().st_size - 100)
+
+
+def zero(path):
+    """Zero the last bytes of a file."""
+    content = path.read_bytes()
+    path.write_bytes(content[:-100] + bytes(100))
+
+
 def kill_at(number, run):
     """Kill a command, which `run(halt=...)` starts, at the n-th change of an unfinished case."""
     halt = Halt(r"\.part/", number)
@@ -132,11 +145,15 @@ class TestCase(SweepTest):
         self.assertTrue((diverged() / sail.LAST_GOOD).exists())
 
     def test_killed_case_that_diverges_leaves_the_same_files(self):
+        """Also after a power cut that took what was not yet on the disk."""
         folder = scratch() / "killed" / "diverged"
         run = partial(start_case, folder, *TOO_LONG, *OFTEN)
-        for number in random.Random(7).sample(range(400), 2):
+        for number, damage in zip(random.Random(7).sample(range(100, 400), 2), (cut, zero)):
             kill_at(number, run)
             self.assertFalse(folder.exists())
+            saved = (part_of(folder) / "checkpoint").iterdir()
+            damage(max(path for path in saved if path.name.isdecimal()) / "scene.yade.gz")
+            damage(part_of(folder) / "history.csv")
         self.completes(run())
         self.same(diverged(), folder)
         self.assertFalse(part_of(folder).exists())
@@ -174,6 +191,20 @@ class TestCase(SweepTest):
         self.completes(start_case(folder, *options))
         self.same(quiet, folder)
 
+    def test_case_killed_just_when_it_has_its_name_is_finished(self):
+        folder = scratch() / "killed_late"
+        halt = Halt(r"begun\.json$", 2)  # first it is made, then removed
+        process = start_case(folder, *SHORT, "--no-pictures", halt=halt)
+        halt.wait(process)
+        kill(process)
+        before = {path: path.stat().st_mtime_ns for path in folder.rglob("*")}
+        self.completes(start_case(folder, *SHORT, "--no-pictures"))
+        after = {path: path.stat().st_mtime_ns for path in folder.rglob("*")}
+        gone = {path.name for path in before.keys() - after.keys()}
+        self.assertEqual(gone, {"begun.json", "lock"})
+        self.assertLessEqual(after.items(), before.items())
+        self.assertFalse(part_of(folder).exists())
+
     def test_finished_case_is_left_alone_and_another_is_refused(self):
         before = {path: path.stat().st_mtime_ns for path in diverged().rglob("*")}
         self.completes(start_case(diverged(), *TOO_LONG))
@@ -184,6 +215,17 @@ class TestCase(SweepTest):
         self.assertNotIn("Traceback", said)
         after = {path: path.stat().st_mtime_ns for path in diverged().rglob("*")}
         self.assertEqual(after, before)
+
+    def test_another_case_does_not_take_the_place_of_one_that_is_not_finished(self):
+        folder = scratch() / "begun" / grid.CASES / "mine"
+        run = partial(start_case, folder, *SHORT, "--no-pictures", *OFTEN)
+        kill_at(60, run)
+        before = tree(part_of(folder))
+        said, _ = run("--beta", "3").communicate()
+        self.assertIn(f"{part_of(folder)} holds another case: beta = 30.0, not 3.0; to lose", said)
+        self.assertEqual(tree(part_of(folder)), before)
+        with self.assertRaisesRegex(ValueError, f"{part_of(folder)} holds another case"):
+            grid.plan(folder.parents[1], {folder.name: SailParameters()})
 
     def test_folder_of_something_else_is_refused_and_nobody_is_told_to_remove_it(self):
         folder = scratch() / "letters"
@@ -264,6 +306,25 @@ class TestSweep(SweepTest):
         for job in jobs:
             send(job, signal.SIGCONT)
         self.completes(process)
+        self.same(self.folder, folder)
+
+    def test_what_a_killed_sweep_leaves_running_is_ended(self):
+        folder = scratch() / "left_over"
+        halt = Halt("checkpoint/", 5)
+        process = start_sweep(folder, *self.OPTIONS, halt=halt)
+        job = halt.wait(process)
+        left = family(process.pid)[1:]
+        os.kill(process.pid, signal.SIGKILL)
+        process.wait()
+        halt.lift()
+        try:
+            said = self.completes(start_sweep(folder, *self.OPTIONS))
+            told = re.search("sweep: ended (.*), processes that a killed sweep had left here", said)
+            self.assertLessEqual({left[0], job}, set(map(int, told[1].split(", "))))
+            self.assertEqual([pid for pid in left if Path(f"/proc/{pid}").exists()], [])
+        finally:
+            for pid in left:
+                send(pid, signal.SIGKILL)
         self.same(self.folder, folder)
 
     def test_lost_case_runs_alone_and_again_if_it_is_killed(self):
@@ -479,6 +540,14 @@ class TestReport(SweepTest):
                 self.assertIn("1 damaged", page)
                 self.assertIn('"deployment_rate.png"', page)
 
+    def test_case_of_other_parameters_than_planned_is_not_complete(self):
+        folder, case = self.copy("of_another")
+        changed(folder / "sweep.json", lambda plan: plan["cases"][case.name].update(duration=0.2))
+        status, said = self.report(folder)
+        self.assertEqual(status, 1)
+        self.assertIn("1 of 2 cases are complete", said)
+        self.assertIn(f"{case.name} is damaged: {case} holds another case: duration = 0.1", said)
+
     def test_damaged_files_of_an_unfinished_case_do_not_end_the_report(self):
         for number, text in enumerate(("", "[1]", "{}", '{"reason": 3}', '{"parameters": [1]}')):
             with self.subTest(text):
@@ -522,6 +591,12 @@ class TestReport(SweepTest):
         self.assertEqual(process.returncode, 1)
         self.assertRegex(said, f"^sweep: {folder}/summary.json .*\n$")
         self.assertEqual(tree(folder), before)
+
+    def test_table_of_another_is_not_written_over(self):
+        folder = scratch() / "own_table"
+        shutil.copytree(two_cases() / grid.CASES, folder / "mine")
+        (folder / "cases.csv").write_text("my own\n")
+        self.refused(folder, f"{folder}/cases.csv was not made by this version")
 
     def test_full_disk_keeps_the_earlier_report(self):
         folder, _ = self.copy("full")

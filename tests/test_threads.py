@@ -13,13 +13,13 @@ STEPS, SAIL_SIZE = 1000, 0.455
 
 
 class TestThreads(unittest.TestCase):
-    def run_on(self, threads, path):
+    def run_on(self, threads, path, *order):
         """Positions (N, 3) [m] after STEPS steps of the released sail on so many threads.
 
         And the strain energy [J] of the first step.
         """
         out = scratch() / f"threads_{threads}_{path}.npz"
-        done = run_yade(DRIVER, released_sail(path), STEPS, out, threads=threads)
+        done = run_yade(DRIVER, released_sail(path), STEPS, out, *order, threads=threads)
         self.assertEqual(done.returncode, 0, done.stderr)
         with np.load(out) as found:
             self.assertEqual(found["threads"], threads)
@@ -29,6 +29,13 @@ class TestThreads(unittest.TestCase):
         for path in scene.PATHS:
             with self.subTest(path):
                 self.check(path)
+
+    def test_sorted_interactions_give_the_same_digits_on_two_threads(self):
+        """As a case of path law2 promises; else sides add up by chance."""
+        ends = [self.run_on(2, "law2", "sorted")[0] for _ in range(2)]
+        one = self.run_on(1, "law2", "sorted")[0]
+        np.testing.assert_array_equal(ends[1], ends[0])
+        np.testing.assert_array_equal(one, ends[0])
 
     def check(self, path):
         (one, energy), (two, energy_of_two) = self.run_on(1, path), self.run_on(2, path)

@@ -8,6 +8,7 @@ import subprocess
 import unittest
 
 from membrane.case_folder import part_of
+from membrane.own import LIST, RUN, add_to_list, listed
 from membrane.unfinished import UNFINISHED, name_of, new_results
 from support import scratch, yade_environment
 
@@ -60,13 +61,20 @@ class TestNewResults(unittest.TestCase):
             (folder / f"{name}.csv").write_text(text)
             (folder / "shapes" / f"film_{text}.vtu").write_text(text)
 
+    def earlier(self, **files):
+        """Results of an earlier run."""
+        with new_results(self.folder) as part:
+            self.write(part, **files)
+
     def found(self):
-        """Text of all files by path below the folder."""
-        files = (path for path in self.folder.rglob("*") if path.is_file())
+        """Text of all files by path below the folder, but for the list of them."""
+        files = (path for path in self.folder.rglob("*") if path.is_file() and path.name != LIST)
         return {str(path.relative_to(self.folder)): path.read_text() for path in files}
 
     def test_results_take_the_place_of_earlier_ones_and_leave_other_files(self):
-        self.write(self.folder, history="old", mine="of the user")
+        self.earlier(history="old")
+        (self.folder / "mine.csv").write_text("of the user")
+        add_to_list(self.folder, RUN, ["sail.gif"])
         (self.folder / "sail.gif").write_text("made of the earlier shapes")
         with new_results(self.folder) as part:
             self.write(part, history="new")
@@ -78,7 +86,7 @@ class TestNewResults(unittest.TestCase):
         self.assertFalse((self.folder / UNFINISHED).exists())
 
     def test_failure_leaves_earlier_results_and_what_there_is_of_the_new(self):
-        self.write(self.folder, history="old")
+        self.earlier(history="old")
         before = self.found()
         for error in (RuntimeError, KeyboardInterrupt):
             with self.assertRaises(error), new_results(self.folder) as part:
@@ -93,17 +101,19 @@ class TestNewResults(unittest.TestCase):
         old = {"history.csv": "old", "other.csv": "old", "shapes/film_old.vtu": "old"}
         new = {name.replace("old", "new"): "new" for name in old}
         outcomes = []
-        for count in range(9):
+        for count in range(12):
             for cut_off in (stopped, killed):
                 with self.subTest(renames=count, by=cut_off.__name__):
                     shutil.rmtree(self.folder, ignore_errors=True)
-                    self.write(self.folder, history="old", other="old")
-                    (self.folder / "shapes" / "film_old.vtu").write_text("old")
+                    self.earlier(history="old", other="old")
                     cut_off(count, self.exchange)
                     with contextlib.suppress(ZeroDivisionError), new_results(self.folder):
                         1 / 0  # a next run, which fails
                     outcomes.append(self.found())
                     self.assertIn(outcomes[-1], (old, new))
+                    self.assertEqual(
+                        listed(self.folder, RUN), {"history.csv", "other.csv", "shapes"}
+                    )
         self.assertIn(old, outcomes)
         self.assertIn(new, outcomes)
 

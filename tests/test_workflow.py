@@ -15,6 +15,9 @@ from slurm import Slurm
 from support import ROOT, CommandTest, long, scratch, yade_environment
 
 sys.path.append(str(ROOT / "scripts"))
+
+from sweeping import config  # noqa: E402  (found only now)
+
 FOLDER = ROOT / "scripts" / "workflow"
 PROFILE = FOLDER / "slurm"
 # Tiny cases of three fold lines; the values of one option are given as Snakemake takes them.
@@ -101,6 +104,9 @@ BAD = {
     "grid: {beta: [.nan]}": "grid: beta = nan must be >= 0",
     "grid: {beta: [[3]]}": "grid: beta = a list of 1 must be a number",
     "grid: {bta: [3]}": "grid: bta is no parameter",
+    "grid: {omega: [15], omega: [20]}": "omega: is given twice",
+    "out: a\nout: b": "out: is given twice",
+    '{"grid": {"beta": [3]}, "grid": {"beta": [4]}}': "grid: is given twice",
     "gird: {beta: [3]}": "gird is nothing to configure",
     "options: 3": "options: must be names with values, not 3",
     "options: {bta: 3}": "options: bta is no parameter",
@@ -111,6 +117,8 @@ BAD = {
     "options: {checkpoint_every: -1}": "options: checkpoint_every = -1 s must be >= 0",
     "threads: many": "threads = 'many' must be a whole number >= 1",
     "memory: 0": "memory = 0 must be a whole number >= 1",
+    "threads: 1e400": "threads = '1e400' must be a whole number >= 1",
+    '{"out": "\\udcff"}': "must be UTF-8",
     "minutes: 1.5": "minutes = 1.5 must be a whole number >= 1",
     "out: 3": "out = 3 must be the name of a folder",
     "out: '{case}'": "out = '{case}' must be the name of a folder",
@@ -174,6 +182,38 @@ class TestBadConfiguration(CommandTest):
                 self.assertNotIn("Traceback", done.stderr)
                 self.assertFalse((folder / "out").exists())
 
+    def test_name_given_twice_on_the_command_line_is_one_sentence(self):
+        folder = new_folder("twice")
+        for words in (["threads=1", "threads=2"], ["options={beta: 3, beta: 4}"]):
+            done = self.start(folder, "--config", *words)
+            name = "threads" if len(words) > 1 else "beta"
+            self.ends_with_one_sentence(done, "workflow", f"--config: {name} is given twice")
+
+    def test_values_taken_over_in_yaml_are_not_given_twice(self):
+        text = "a: &a {beta: 3, zeta: 1}\nb: {c: &c {<<: *a, beta: 4}}\nd: {<<: *c, beta: 5}\n"
+        (scratch() / "merged.yaml").write_text(text)
+        found = config.read_config(scratch() / "merged.yaml")
+        self.assertEqual(found["b"]["c"], {"beta": 4, "zeta": 1})
+        self.assertEqual(found["d"], {"beta": 5, "zeta": 1})
+
+    def test_folder_may_look_like_an_option_or_stand_below_home(self):
+        folder = new_folder("odd_out")
+        for out, meant in (("-dash", folder / "-dash"), ("~/grid", scratch() / "grid")):
+            with self.subTest(out):
+                options = ["--config", f"out={out}", "options={parameters: ~/p.json}"]
+                (scratch() / "p.json").write_text("{}")
+                done = subprocess.run(
+                    workflow("-np", *options),
+                    cwd=folder,
+                    env={**yade_environment(), "HOME": str(scratch())},
+                    capture_output=True,
+                    text=True,
+                )
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertIn(f" --out {meant}/cases/", done.stdout)
+                self.assertIn(f"sweep.py report {meant}\n", done.stdout)
+                self.assertIn(f" --parameters={scratch()}/p.json ", done.stdout)
+
     def test_results_of_a_single_run_are_not_written_over(self):
         folder = new_folder("single_run")
         (folder / "results").mkdir()
@@ -186,7 +226,8 @@ class TestBadConfiguration(CommandTest):
 
     def test_numbers_as_yaml_takes_them_for_texts_are_values(self):
         folder = new_folder("texts")
-        content = "grid: {beta: [1e1]}\noptions: {duration: 1e-2, no_pictures: true}\n"
+        content = "grid: {beta: [1e1]}\noptions: {duration: 1e-2, no_pictures: true}\nmemory: 1e3\n"
+        content += "threads: 1.0\n"
         (folder / "mine.yaml").write_text(content)
         for plan in (["--dry-run", "--printshellcmds"], ["-np"], ["-pn"]):
             done = self.start(folder, "--configfile", "mine.yaml", *plan)

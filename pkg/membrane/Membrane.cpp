@@ -12,6 +12,7 @@
 #include <core/InteractionContainer.hpp>
 #include <core/Omega.hpp>
 #include <numeric>
+#include <utility>
 
 namespace yade {
 
@@ -44,10 +45,14 @@ void Membrane::pyHandleCustomCtorArgs(boost::python::tuple&, boost::python::dict
     takeArray(keywords, "creaseSigns", creaseSigns);
     takeArray(keywords, "cables", cables);
     takeArray(keywords, "pointMasses", pointMasses);
-    if (any && boost::python::len(keywords) == 0) callPostLoad(); // which YADE does only if it finds keywords
+    if (any && boost::python::len(keywords) == 0)
+        callPostLoad(); // which YADE does only if it finds keywords
+    else
+        isAboutToLoadTwice_ = any;
 }
 
 void Membrane::postLoad(Membrane&) {
+    if (std::exchange(isAboutToLoadTwice_, false)) return; // YADE's constructor calls it twice, and it takes long
     const StepGuard::Look look;
     ++version_;
     rest_ = ::membrane::RestState();                                  // what follows may refuse the attributes

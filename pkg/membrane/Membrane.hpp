@@ -95,6 +95,7 @@ public:
 private:
     ::membrane::RestState rest_;
     long version_ = 0;
+    bool isAboutToLoadTwice_ = false;
     Real young_ = 0., poisson_ = 0., thickness_ = 0.; ///< with which rest_ was computed
     vector<int> nodesByBody_; ///< nodes in the order of their bodies' ids; empty if that is their own order
 

@@ -185,8 +185,7 @@ void MembraneForceEngine::checkNode(int node) const {
     std::ostringstream message;
     message << which << ": its mass was changed from " << masses_[node] << " to " << states_[node]->mass
             << " kg since its forces are computed; give pointMasses to a new membrane, or set the engine's membrane to "
-               "None "
-               "and back to go on with that mass";
+            << "None and back to go on with that mass";
     throw std::runtime_error(message.str());
 }
 
@@ -300,6 +299,12 @@ void MembraneForceEngine::findContacts() {
         throw std::runtime_error(getClassName() + ": the interactions of its membrane would pull once more; call "
                                                   "removeInteractions() of the membrane");
     contacts_.swap(found.contacts);
+    for (const NodeContact& contact : contacts_)
+        if (membrane->nodeOf(contact.other) >= 0)
+            throw std::runtime_error(getClassName() + ": bodies #" + std::to_string(membrane->bodyIds[contact.node]) +
+                                     " and #" + std::to_string(contact.other) +
+                                     ", nodes of one membrane, touch like grains; put "
+                                     "Ig2_MembraneNode_MembraneNode_MembraneGeom() into InteractionLoop");
     if (contacts_.empty() || forceTimeStep) return;
     constexpr Real grown = 1.1;
     const Real fastest = ContactStiffness(contacts_, bodies_, *scene).fastest;

@@ -36,6 +36,12 @@ void registerClasses(const vector<string>& names) {
     for (const string& name : names) ClassFactory::instance().pluginClasses.remove(name);
 }
 
+/// Lets a 3D view that was opened before the classes came know their shapes: YADE would stop at the first node.
+void renewDrawing(const shared_ptr<Serializable>& renderer) {
+    if (renderer->getClassName() != "OpenGLRenderer") throw std::invalid_argument("renew_drawing: no OpenGLRenderer");
+    static_cast<OpenGLRenderer&>(*renderer).initgl();
+}
+
 py::tuple asTuple(const Vector3r& v) {
     return py::make_tuple(v[0], v[1], v[2]);
 }
@@ -113,6 +119,7 @@ void writeState(const shared_ptr<State>& state, const Vector3r& vel, Real mass) 
 
 BOOST_PYTHON_MODULE(_membrane) {
     py::def("register_classes", registerClasses);
+    py::def("renew_drawing", renewDrawing);
     py::def("fields_of_body", fieldsOfBody);
     py::def("fields_of_interaction", fieldsOfInteraction);
     py::def("fields_of_engine", fieldsOfEngine);

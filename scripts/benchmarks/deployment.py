@@ -31,14 +31,14 @@ def deploy(path):
             ["yade", "-n", "-x", "-j", "1", str(SCRIPT)]
             + ["--path", path, "--no-pictures", "--no-report", "--out", folder],
             capture_output=True,
-            text=True,
+            encoding="utf-8",
             timeout=3600,
         )
         if done.returncode:
             raise RuntimeError(f"deploy failed: {done.stderr.strip()[-500:]}")
         wall = time.monotonic() - start
         summary, times = (
-            json.loads((Path(folder) / name).read_text())
+            json.loads((Path(folder) / name).read_text(encoding="utf-8"))
             for name in ("summary.json", "wall_time.json")
         )
         return {**summary, "wall_time": times}, wall, processor_time() - used

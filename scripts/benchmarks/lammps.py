@@ -63,7 +63,7 @@ def write_data(sheet, path):
     ids = 1 + np.arange(len(sheet.nodes))
     ones = np.ones_like(ids)
     box = np.column_stack([sheet.places.min(axis=0) - MARGIN, sheet.places.max(axis=0) + MARGIN])
-    with open(path, "w") as file:
+    with open(path, "w", encoding="utf-8") as file:
         file.write(f"Sheet\n\n{len(ids)} atoms\n{len(sides)} bonds\n1 atom types\n2 bond types\n\n")
         for axis, (low, high) in zip("xyz", box):
             file.write(f"{low:.9g} {high:.9g} {axis}lo {axis}hi\n")
@@ -84,8 +84,8 @@ def version():
     """The version of LAMMPS; None if there is no LAMMPS."""
     if not available():
         return None
-    said = subprocess.run([PROGRAM, "-h"], capture_output=True, text=True, check=False).stdout
-    found = re.search(r"Simulator - (.+)", said)
+    done = subprocess.run([PROGRAM, "-h"], capture_output=True, encoding="utf-8", check=False)
+    found = re.search(r"Simulator - (.+)", done.stdout)
     return found[1] if found else "unknown"
 
 
@@ -107,14 +107,14 @@ def run(folder, steps, threads):
 
     Debian's LAMMPS has no threads (package OPENMP): two of them are two processes under MPI.
     """
-    (folder / "in.sheet").write_text(input_text(steps))
+    (folder / "in.sheet").write_text(input_text(steps), encoding="utf-8")
     start = [] if threads == 1 else ["mpirun", "--allow-run-as-root", "-np", str(threads)]
     done = subprocess.run(
         [*start, PROGRAM, "-in", "in.sheet", "-log", "none"],
         cwd=folder,
         env={**os.environ, "OMP_NUM_THREADS": "1"},
         capture_output=True,
-        text=True,
+        encoding="utf-8",
         timeout=600,
     )
     if done.returncode:

@@ -16,7 +16,7 @@ TICKS = os.sysconf("SC_CLK_TCK")  # a second, in /proc
 def _busy():
     """Time [s] that all cores were busy, or withheld from this machine by its host."""
     user, nice, system, _, _, irq, soft, stolen = map(
-        int, Path("/proc/stat").read_text().split()[1:9]
+        int, Path("/proc/stat").read_text(encoding="utf-8").split()[1:9]
     )
     return (user + nice + system + irq + soft + stolen) / TICKS
 
@@ -26,7 +26,7 @@ def _children():
     ticks = 0
     for path in Path("/proc").glob("[0-9]*/stat"):
         try:
-            fields = path.read_text().rpartition(")")[2].split()
+            fields = path.read_bytes().rpartition(b")")[2].split()
         except OSError:  # it has just ended
             continue
         if int(fields[1]) == os.getpid():

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What was measured: a table to read, and reference/bench.json."""
 
-import json
 import os
 import subprocess
 from pathlib import Path
 
-from membrane.files import write_json
+from membrane.files import read_object, write_json
 from membrane.text_table import aligned
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -39,14 +38,14 @@ def commit():
 
 def _git(*arguments):
     done = subprocess.run(
-        ["git", "-C", str(ROOT), *arguments], capture_output=True, text=True, check=True
+        ["git", "-C", str(ROOT), *arguments], capture_output=True, encoding="utf-8", check=True
     )
     return done.stdout
 
 
 def processor():
     """Model of the processor and how many cores of it there are."""
-    text = Path("/proc/cpuinfo").read_text()
+    text = Path("/proc/cpuinfo").read_text(encoding="utf-8")
     models = [line.split(":", 1)[1].strip() for line in text.splitlines() if "model name" in line]
     return f"{models[0] if models else 'unknown'}, {os.cpu_count()} cores"
 
@@ -87,7 +86,7 @@ def save(path, module, rows, made_with, order):
     keys = [(row["name"], row["nodes"], row["threads"]) for row in rows]
     if len(set(keys)) < len(keys):
         raise RuntimeError(f"{module} has two entries of one name, size and number of threads")
-    before = json.loads(path.read_text()) if path.exists() else {"made_with": {}, "entries": []}
+    before = read_object(path) if path.exists() else {"made_with": {}, "entries": []}
     used = {**before["made_with"], module: made_with}
     kept = [row for row in before["entries"] if row["module"] in order and row["module"] != module]
     content = {

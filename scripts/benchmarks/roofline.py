@@ -20,7 +20,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
-from membrane.plots import DPI
+from membrane.plots import save
 
 from . import cases, results
 from .sheet import SIDES
@@ -92,7 +92,7 @@ def levels(folder=Path("/sys/devices/system/cpu/cpu0/cache")):
     found = []
     for cache in sorted(folder.glob("index*")):
         kind, level, size, line, ways = (
-            (cache / name).read_text().strip()
+            (cache / name).read_text(encoding="utf-8").strip()
             for name in ("type", "level", "size", "coherency_line_size", "ways_of_associativity")
         )
         if kind != "Instruction":
@@ -135,7 +135,7 @@ def answer(command):
 
 def said(command):
     """What a command prints."""
-    done = subprocess.run(list(map(str, command)), capture_output=True, text=True)
+    done = subprocess.run(list(map(str, command)), capture_output=True, encoding="utf-8")
     if done.returncode:
         raise RuntimeError(f"{command[0]} failed: {(done.stdout + done.stderr).strip()[-600:]}")
     return done.stdout
@@ -247,7 +247,7 @@ def simulate(side, everything, known):
                 + [f"--LL={last.size},{last.ways},{last.line}"]
                 + sheet(side, everything, WARM, STEPS)
             )
-            with open(file) as lines:
+            with open(file, encoding="utf-8") as lines:
                 events, counts = executed(lines)
         misses[first.name] = (events["D1mr"] + events["D1mw"]) / STEPS
         misses[last.name] = (events["DLmr"] + events["DLmw"]) / STEPS
@@ -456,4 +456,4 @@ def plot(found, points, known, path):
     axes.set(ylabel="operations a second [Gflop/s]")
     axes.grid(alpha=0.3)
     axes.legend(frameon=False, fontsize=9, loc="lower right")
-    figure.savefig(path, dpi=DPI)
+    save(figure, path)

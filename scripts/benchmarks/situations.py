@@ -32,7 +32,7 @@ def resident():
     """
     gc.collect()
     ctypes.CDLL(None).malloc_trim(0)
-    lines = Path("/proc/self/status").read_text().splitlines()
+    lines = Path("/proc/self/status").read_text(encoding="utf-8").splitlines()
     sizes = {line.split(":")[0]: line.split()[1] for line in lines if line.startswith("Vm")}
     return 1024 * int(sizes["VmRSS"]), 1024 * int(sizes["VmHWM"])
 

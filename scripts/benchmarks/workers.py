@@ -27,14 +27,14 @@ class Worker:
 
     def __init__(self, situation, threads=1, **options):
         self.name = f"{situation} {options} on {threads} threads"
-        self.said = tempfile.TemporaryFile("w+")
+        self.said = tempfile.TemporaryFile("w+", encoding="utf-8")
         asked = {"situation": situation, "threads": threads, "options": options}
         self.process = subprocess.Popen(
             ["yade", "-n", "-x", "-j", str(threads), str(SCRIPT), json.dumps(asked)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self.said,
-            text=True,
+            encoding="utf-8",
         )
         self._answer()
 

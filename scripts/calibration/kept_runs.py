@@ -2,10 +2,11 @@
 """The runs of a calibration that is not finished, in a file from which the next call goes on."""
 
 import json
+import os
 from threading import Lock
 
 import numpy as np
-from membrane.files import replace_text
+from membrane.files import named, replace_text
 
 
 class KeptRuns:
@@ -42,7 +43,7 @@ class KeptRuns:
             if not self._is_begun:
                 self._begin()
             self._curves[tuple(point)] = curves
-            with open(self.path, "a") as file:
+            with named(self.path), open(self.path, "a", encoding="utf-8") as file:
                 file.write(_line([point, _plain(curves)]))
 
     def _begin(self):
@@ -50,6 +51,22 @@ class KeptRuns:
         lines = [self.about, *([point, _plain(curves)] for point, curves in self._curves.items())]
         replace_text(self.path, "".join(map(_line, lines)))
         self._is_begun = True
+
+
+def refuse_another(path):
+    """Raise ValueError if there is something else than kept runs at a path: it would be lost."""
+    if not os.path.lexists(path):
+        return
+    try:
+        with open(path, encoding="utf-8") as file:
+            about = json.loads(file.readline())
+    except (OSError, ValueError):
+        about = None
+    if path.is_symlink() or not isinstance(about, dict) or not {"names", "times"} <= set(about):
+        raise ValueError(
+            f"{path} was not made by calibrate, and would be lost: move it away, or choose another "
+            "folder"
+        )
 
 
 def _line(content):
@@ -63,7 +80,7 @@ def _plain(curves):
 def _read(path, about):
     """Points and curves of a file's whole lines, if it is about the same."""
     try:
-        first, *lines = path.read_text().splitlines(keepends=True)
+        first, *lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
         if json.loads(first) != json.loads(json.dumps(about)):
             return
     except (FileNotFoundError, ValueError):

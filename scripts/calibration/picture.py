@@ -4,6 +4,7 @@
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
+from membrane.plots import save
 
 from . import COLUMNS
 
@@ -40,7 +41,7 @@ def draw(path, target, fit, surface, found, names, runs):
         above.legend(frameon=False)
     if len(names) == 2:
         _draw_parameters(figure.add_subplot(grid[:, -1]), found, names, runs, surface.region)
-    figure.savefig(path, dpi=DPI)
+    save(figure, path, dpi=DPI)
 
 
 def _draw_curve(above, below, target, i, name, fit, scatter):

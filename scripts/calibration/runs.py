@@ -11,9 +11,10 @@ from pathlib import Path
 import numpy as np
 from membrane._load import VERSION
 from membrane.case_folder import LAST_GOOD
+from membrane.unfinished import UNFINISHED
 from scipy.interpolate import CubicSpline
 
-from .kept_runs import KeptRuns
+from .kept_runs import KeptRuns, refuse_another
 
 DEPLOY = Path(__file__).resolve().parents[1] / "deploy.py"
 INTERVAL = 1e-3  # [s] between rows of a run's history
@@ -50,6 +51,7 @@ class Deployments:
             "columns": list(self.target.columns),
             "times": self.target.times.tolist(),
         }
+        refuse_another(path)
         self.kept = KeptRuns(path, about)
         return len(self.kept)
 
@@ -93,9 +95,11 @@ class Deployments:
             done = subprocess.run(
                 ["yade", "-n", "-x", "-j1", str(DEPLOY), *self.options, *self._own(values, folder)],
                 capture_output=True,
-                text=True,
+                encoding="utf-8",
+                errors="replace",
             )
-            diverged = (Path(folder) / LAST_GOOD).exists()
+            kept = Path(folder) / UNFINISHED / LAST_GOOD  # also by a run that was only stopped
+            diverged = done.returncode == 1 and kept.exists()
             if done.returncode and not diverged:
                 said = [line for line in done.stderr.splitlines() if line.startswith("deploy:")]
                 raise RuntimeError(said[-1] if said else f"a run ended by {done.returncode}")
@@ -118,7 +122,7 @@ class Deployments:
 
     def _read(self, path):
         """Curves (C, S) of a history.csv at the target's times."""
-        table = np.genfromtxt(path, delimiter=",", names=True)
+        table = np.genfromtxt(path, delimiter=",", names=True, encoding="utf-8")
         rows = np.array([table[name] for name in self.target.columns])
         return CubicSpline(table["time"], rows, axis=1)(self.target.times)
 

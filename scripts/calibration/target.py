@@ -5,12 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from membrane.files import BadFile
-from membrane.history import read_history
 
 from . import COLUMNS
+from .table import read_table
 
 FEWEST = 12  # times
-LARGEST = 1e6  # of values, far beyond any angle or rate
+# What no curve reaches in its own unit, and which unit it probably has.
+BEYOND = {"phase_difference": (np.pi, "degrees"), "deployment_rate": (1.5, "percent")}
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,7 @@ def noise_of(values):
 
 
 def read_target(path, columns=(), until=0.1):
-    """Target from a CSV file with a header, as history.csv; other columns may hold anything.
+    """Target from a table with a header, as history.csv; other columns may hold anything.
 
     Parameters
     ----------
@@ -59,10 +60,10 @@ def read_target(path, columns=(), until=0.1):
     Raises
     ------
     BadFile
-        If it is no table, a column is missing, a number is not finite, a curve is flat, or times do
-        not grow or are too few.
+        If it is no table, a column is missing, a number is not finite, a curve is flat or seems to
+        be in another unit, or times do not grow or are too few.
     """
-    found = read_history(path, ("time", *(columns or COLUMNS)))
+    found = read_table(path, ("time", *(columns or COLUMNS)))
     columns = tuple(columns) or tuple(name for name in COLUMNS if name in found)
     missing = [name for name in ("time", *columns) if name not in found]
     if missing or not columns:
@@ -71,11 +72,21 @@ def read_target(path, columns=(), until=0.1):
     early = found["time"] <= until
     times, values = found["time"][early], np.array([found[name][early] for name in columns])
     if len(times) < FEWEST:
-        raise BadFile(path, "", f"has {len(times)} times up to {until:g} s, not {FEWEST}")
+        reason = f"has {len(times)} times up to {until:g} s, not {FEWEST}; times are in s"
+        raise BadFile(path, "", reason)
     if times[0] < 0 or np.any(np.diff(times) <= 0):
         raise BadFile(path, "", "times must be >= 0, the release, and grow")
-    if np.max(np.abs(values)) > LARGEST:
-        raise BadFile(path, "", f"has values beyond {LARGEST:g}")
+    for name, curve in zip(columns, values):
+        most, unit = BEYOND[name]
+        if np.max(np.abs(curve)) > most:
+            reached = curve[np.argmax(np.abs(curve))]
+            there = "" if COLUMNS[name] == "-" else f" {COLUMNS[name]}"
+            raise BadFile(
+                path,
+                name,
+                f"reaches {reached:.4g}{there}, and no sail more than {most:.3g}{there}: are these "
+                f"{unit}?",
+            )
     if not np.ptp(values, axis=1).all():
         raise BadFile(path, "", "a curve does not vary")
     return Target(times, columns, values, noise_of(values))

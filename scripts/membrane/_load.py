@@ -45,9 +45,21 @@ def load():
         native = importlib.import_module("._membrane", __package__)
         check_layout(native, wrapper)
         native.register_classes(list(names))
+        _let_others_know(native, wrapper)
         for alias, name in ALIASES.items():
             setattr(wrapper, alias, getattr(wrapper, name))
     return {name: getattr(wrapper, name) for name in names}
+
+
+def _let_others_know(native, wrapper):
+    """Make room for the new classes where YADE has tables of classes already, or it would abort."""
+    for engine in wrapper.Omega().engines:
+        for name in ("geomDispatcher", "physDispatcher", "lawDispatcher", "boundDispatcher"):
+            dispatcher = getattr(engine, name, None)
+            if dispatcher is not None:
+                dispatcher.functors = dispatcher.functors
+    if "yade.qt" in sys.modules:
+        native.renew_drawing(sys.modules["yade.qt"].Renderer())
 
 
 def _running_yade():

@@ -32,6 +32,8 @@ from vtkmodules.vtkRenderingCore import (
     vtkTextActor,
 )
 
+from . import own
+from .files import replacing
 from .finished_run import read_run
 from .output import cell_array, read_frame
 from .plots import FILM, SPOOL, VIEW
@@ -76,18 +78,12 @@ def animate(folder):
         if not shutil.which(program):
             raise RuntimeError(f"no animation without {program} (apt-get install {package})")
     run = read_run(folder)
+    own.add_to_list(folder, own.RUN, FILES)
     films = [folder / name for name in FILES]
-    parts = [path.with_name(f"{path.stem}.part{path.suffix}") for path in films]
-    try:
-        with virtual_display():
-            with contextlib.closing(Stage(run)) as stage:
-                _encode(parts[0], (stage.picture(i) for i in range(len(run.shapes))))
-        _write_gif(*parts, len(run.shapes))
-        for part, path in zip(parts, films):
-            os.replace(part, path)
-    finally:
-        for part in parts:
-            part.unlink(missing_ok=True)
+    with replacing(films[0]) as film, replacing(films[1]) as gif:
+        with virtual_display(), contextlib.closing(Stage(run)) as stage:
+            _encode(film, (stage.picture(i) for i in range(len(run.shapes))))
+        _write_gif(film, gif, len(run.shapes))
     return films
 
 
@@ -106,7 +102,7 @@ def virtual_display():
     os.close(writing)
     before = os.environ.get("DISPLAY")
     try:
-        with os.fdopen(reading) as answer:
+        with os.fdopen(reading, encoding="utf-8") as answer:
             number = answer.readline().strip()
         if not number:
             raise RuntimeError(f"Xvfb ended with status {server.wait()}")
@@ -358,6 +354,8 @@ def _encode(path, pictures):
         "yuv420p",
         "-movflags",
         "+faststart",
+        "-f",
+        "mp4",
     ]
     encoder = subprocess.Popen(
         _ffmpeg(*source, "-i", "-", *target, path),
@@ -375,7 +373,8 @@ def _encode(path, pictures):
         encoder.communicate()
         raise
     if encoder.returncode:
-        raise RuntimeError(f"ffmpeg failed on {path}: {said.decode().strip()[-300:]}")
+        said = said.decode(errors="replace").strip()
+        raise RuntimeError(f"ffmpeg failed on {path}: {said[-300:]}")
 
 
 def _write_gif(film, gif, pictures):
@@ -387,8 +386,10 @@ def _write_gif(film, gif, pictures):
             f"scale={width}:-2:flags=lanczos,split[a][b];[a]palettegen=max_colors=64[p];"
             "[b][p]paletteuse=dither=bayer:bayer_scale=4"
         )
-        command = _ffmpeg("-i", film, "-vf", look, "-r", f"{RATE}/{skip}", gif)
-        done = subprocess.run(command, capture_output=True, text=True, start_new_session=True)
+        command = _ffmpeg("-i", film, "-vf", look, "-r", f"{RATE}/{skip}", "-f", "gif", gif)
+        done = subprocess.run(
+            command, capture_output=True, encoding="utf-8", errors="replace", start_new_session=True
+        )
         if done.returncode:
             raise RuntimeError(f"ffmpeg failed on {gif}: {done.stderr.strip()[-300:]}")
         if gif.stat().st_size <= GIF_LARGEST:

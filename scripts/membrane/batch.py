@@ -63,6 +63,14 @@ def batch_row(**others):
     )
 
 
+def folder_of(description):
+    """Name of a folder for a row of this `description`; ValueError if that can be none."""
+    name = description.replace("/", "_")
+    if name in ("", ".", "..") or not name.isprintable():
+        raise ValueError(f"description = {shown(description)} must be the name of a folder")
+    return name
+
+
 def _check_columns(file, row, known):
     """ValueError if a `row` of the table `file` has a column that is not among the `known`."""
     for name in row:

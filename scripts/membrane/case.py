@@ -6,26 +6,25 @@ after it was killed, it goes on from there. What it leaves is, byte for byte, wh
 left had it never been stopped, but for wall_time.json.
 """
 
-import fcntl
-import json
 import os
 import shutil
+from contextlib import suppress
 from pathlib import Path
 
-from . import sail
+from . import own, sail
 from .case_folder import (
     BEGUN,
     COMPLETE,
     DIVERGED,
     FAILURE,
-    LOCK,
     RESULT,
     SAVED,
     finished,
     part_of,
+    refuse_another,
 )
 from .checkpoint import Checkpoints
-from .files import settle, write_json
+from .files import TEMPORARY, flush, read_object, settle, write_json
 
 
 def run_case(p, folder, checkpoint_every=60.0, pictures=True):
@@ -50,31 +49,29 @@ def run_case(p, folder, checkpoint_every=60.0, pictures=True):
     Raises
     ------
     ValueError
-        If `folder` holds another case, or the parameters are refused.
+        If `folder` holds another case, also one that is not finished, or the parameters are
+        refused.
     """
     folder = Path(folder).absolute()
     part = part_of(folder)
     checkpoints = Checkpoints(part / SAVED, checkpoint_every)
     found = finished(folder, p.as_dict())
-    while not found:
-        part.mkdir(parents=True, exist_ok=True)
-        with open(part / LOCK, "w") as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX)  # waits for another process that runs the case
-            if still_there(lock, part / LOCK):
-                found = finished(folder, p.as_dict()) or finish(p, folder, checkpoints, pictures)
-            else:
-                found = finished(folder, p.as_dict())
-                if still_there(lock, folder / LOCK):  # made in the moment before it was renamed
-                    (folder / LOCK).unlink()
+    if not found:
+        with own.held(part):  # waits for another process that runs the case
+            found = finished(folder, p.as_dict())
+            if not found:
+                return finish(p, folder, checkpoints, pictures)
+            if not own.content(part):  # made just now
+                own.remove(part)
+    tidy(folder)
     return found
 
 
-def still_there(file, path):
-    """Whether an open file is still the one at `path`."""
-    try:
-        return os.path.samestat(os.fstat(file.fileno()), os.stat(path))
-    except FileNotFoundError:
-        return False
+def tidy(folder):
+    """Remove from a finished case what is of use only before."""
+    if (folder / BEGUN).exists():  # it may be on a medium that can only be read
+        (folder / BEGUN).unlink()
+    own.unlock(folder)
 
 
 def finish(p, folder, checkpoints, pictures):
@@ -93,20 +90,22 @@ def finish(p, folder, checkpoints, pictures):
     """
     part = part_of(folder)
     about = {"parameters": p.as_dict(), "versions": sail.versions()}
+    refuse_another(folder, p.as_dict())
     begin(part, about)
     if not (part / RESULT).exists():
         try:
             result = deploy(p, part, checkpoints, pictures)
         except Exception as error:
-            write_json(part / FAILURE, {"reason": str(error) or type(error).__name__})
+            with suppress(OSError):  # a full disk, say, of which `error` tells
+                write_json(part / FAILURE, {"reason": str(error) or type(error).__name__})
             raise
+        settle(part)  # all that a result stands for
         write_json(part / RESULT, {**result, **about})
     shutil.rmtree(part / SAVED, ignore_errors=True)
-    settle(part)
-    (part / BEGUN).unlink()
-    (part / LOCK).unlink()
     os.rename(part, folder)
-    return json.loads((folder / RESULT).read_text())
+    flush(folder.parent)
+    tidy(folder)
+    return read_object(folder / RESULT)
 
 
 def deploy(p, part, checkpoints, pictures):
@@ -122,15 +121,13 @@ def deploy(p, part, checkpoints, pictures):
 def begin(part, about):
     """Make `part` ready: empty, unless the same case was begun there by the same versions."""
     try:
-        begun = json.loads((part / BEGUN).read_text())
+        begun = read_object(part / BEGUN)
     except (FileNotFoundError, ValueError):
         begun = None
     if begun == about:
         (part / FAILURE).unlink(missing_ok=True)
-        return
-    for path in part.iterdir():
-        if path.is_dir():
-            shutil.rmtree(path)
-        elif path.name != LOCK:
+        for path in part.rglob(TEMPORARY + "*"):  # of a process that was killed
             path.unlink()
+        return
+    own.empty(part)
     write_json(part / BEGUN, about)

@@ -2,6 +2,7 @@
 """Folders of cases: names of their files, and what has become of a case. Needs no YADE."""
 
 import fcntl
+import os
 import sys
 from dataclasses import dataclass, field, fields
 from pathlib import Path
@@ -10,6 +11,7 @@ import numpy as np
 
 from .files import BadFile, read_object, shown
 from .history import read_history
+from .own import LOCK
 from .parameters import SailParameters
 
 COMPLETE, DIVERGED = "complete", "diverged"  # outcomes: the case is finished
@@ -21,7 +23,7 @@ CURVES = ("time", "deployment_rate", "phase_difference")  # columns that it must
 
 RESULT = "case.json"  # what came of the case
 FAILURE = "failure.json"  # in the folder NAME.part: why there is none
-BEGUN, LOCK, SAVED = "begun.json", "lock", "checkpoint"  # in NAME.part only
+BEGUN, SAVED = "begun.json", "checkpoint"  # in NAME.part only
 PART = ".part"
 LAST_GOOD = "last_good.yade.gz"  # scene of a run that went wrong
 
@@ -52,7 +54,7 @@ def finished(folder, wanted=None):
     ValueError
         If it holds one of other parameters.
     """
-    if not folder.exists():
+    if not os.path.lexists(folder):
         return None
     try:
         found = _result(folder)
@@ -104,7 +106,7 @@ def _result(folder):
 
 
 def _curves(folder, found):
-    """The history.csv of a case with this case.json; None if it diverged before the first row.
+    """CURVES of a case with this case.json; None if it diverged before the first row.
 
     Raises
     ------
@@ -125,7 +127,7 @@ def _curves(folder, found):
         row = int(np.argmax(np.diff(history["time"]) <= 0)) + 1
         raise BadFile(path, f"line {row + 2}, time", "must be later than in the line before")
     if len(history["time"]):
-        return history
+        return {name: history[name].copy() for name in CURVES}  # the others are not kept
     if is_complete:
         raise BadFile(path, "", "has no row")
     return None
@@ -174,7 +176,7 @@ class Status:
     time : float or None
         When it diverged, after the release [s]; None if before.
     history : dict of (S,) float or None
-        Columns of the history.csv of a finished case, by name; None where there are no rows.
+        CURVES of a finished case by name; None where there are no rows.
     """
 
     folder: Path
@@ -196,11 +198,37 @@ class Status:
         return self.state in (COMPLETE, DIVERGED)
 
 
-def look(folder):
-    """The Status of the case of a folder."""
+def refuse_another(folder, wanted):
+    """Raise ValueError if another case has begun to run for a folder, and has a checkpoint.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the case.
+    wanted : dict
+        Parameters that it must have.
+    """
+    part = part_of(folder)
+    begun, _ = _begun(part / BEGUN)
+    if begun and (part / SAVED).is_dir():
+        try:
+            _compare(part, begun, wanted)
+        except ValueError as error:
+            raise ValueError(f"{error}; to lose what it has done, remove {part}") from None
+
+
+def look(folder, wanted=None):
+    """The Status of the case of a folder; DAMAGED if it is finished with others than `wanted`.
+
+    Parameters
+    ----------
+    folder : path
+    wanted : dict, optional
+        Parameters that it must have.
+    """
     folder = Path(folder)
-    if folder.exists():
-        return _look_at_result(folder)
+    if os.path.lexists(folder):
+        return _look_at_result(folder, wanted)
     part = part_of(folder)
     if not part.is_dir():
         return Status(folder, MISSING, "it has not been run yet")
@@ -216,14 +244,15 @@ def look(folder):
     return Status(folder, KILLED, reason, *about)
 
 
-def _look_at_result(folder):
+def _look_at_result(folder, wanted):
     """The Status of a case whose folder is there."""
     about = {}, {}
     try:
         found = _result(folder)
         about = found["parameters"], found["versions"]
+        _compare(folder, found["parameters"], wanted)
         history = _curves(folder, found)
-    except (BadFile, OSError) as error:
+    except (ValueError, OSError) as error:
         return Status(folder, DAMAGED, str(error), *about)
     outcome, reason, time = (found.get(name) for name in ("outcome", "reason", "time"))
     return Status(folder, outcome, reason or "", *about, time, history)
@@ -251,7 +280,7 @@ def _read(path):
 def _locked(path):
     """Whether a process holds the lock of a case."""
     try:
-        with open(path) as lock:
+        with open(path, "rb") as lock:
             fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
     except FileNotFoundError:
         return False

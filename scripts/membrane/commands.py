@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """How the commands of scripts/ end where something is wrong: one sentence and an exit status."""
 
-import argparse
+import os
 import signal
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
+
+from .parameters import Refused, check_name, whole
 
 STOPPED, TERMINATED = 130, 143  # exit statuses after Ctrl-C and SIGTERM, as shells have them
 DEBIAN = {"vtkmodules": "vtk9"}  # packages whose names in Python and in Debian differ
@@ -18,16 +20,23 @@ class Terminated(BaseException):
 def folder(text):
     """A Path from a word of the command line, which must not be empty."""
     if not text:
-        raise argparse.ArgumentTypeError("must name a folder")
-    return Path(text)
+        raise Refused("must name a folder")
+    return file(text)
+
+
+def file(text):
+    """A Path from a word of the command line; Refused unless its name is UTF-8."""
+    path = Path(os.path.expanduser(text))
+    check_name(path)
+    return path
 
 
 def count(text):
     """A whole number from a word of the command line, which must be at least 1."""
-    number = int(text)
-    if number < 1:
-        raise argparse.ArgumentTypeError(f"{text}: must be at least 1")
-    return number
+    found = whole(text)
+    if found < 1:
+        raise Refused(f"{text}: must be at least 1")
+    return found
 
 
 @contextmanager
@@ -47,16 +56,17 @@ def plain_errors(command, stopped="stopped by Ctrl-C"):
     # Under nohup SIGHUP is ignored, and stays so.
     heard = [s for s in (signal.SIGTERM, signal.SIGHUP) if signal.getsignal(s) != signal.SIG_IGN]
     before = {number: signal.signal(number, _terminate) for number in heard}
+    with suppress(AttributeError):  # of a caller's own
+        sys.stdout.reconfigure(errors="backslashreplace")  # as standard error
     try:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])  # which scripts/run.sh blocks
         yield
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, Terminated) as error:
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # the end is near, and must not be disturbed
-        print(f"\n{command}: {stopped}", file=sys.stderr)
-        sys.exit(STOPPED)
-    except Terminated:
-        print(f"\n{command}: terminated", file=sys.stderr)
-        sys.exit(TERMINATED)
+        by_hand = isinstance(error, KeyboardInterrupt)
+        sentence = stopped if by_hand else "terminated"
+        print(f"\n{command}: {'. '.join(filter(None, [sentence, str(error)]))}", file=sys.stderr)
+        sys.exit(STOPPED if by_hand else TERMINATED)
     except MemoryError as error:
         sys.exit(f"{command}: there is not enough memory" + (f": {error}" if str(error) else ""))
     except ModuleNotFoundError as error:

@@ -8,11 +8,13 @@ a file that cannot be opened at all is an OSError.
 import json
 import math
 import os
-from contextlib import contextmanager
+import secrets
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 LARGEST = 256 * 2**20  # bytes; ten million nodes fill about as much
 SHOWN = 60  # characters of a bad value that a message repeats
+TEMPORARY = ".membrane-"  # names of files begin by it that are to take the place of others
 
 
 class BadFile(ValueError):
@@ -61,6 +63,20 @@ def read_text(path, largest=LARGEST):
         raise BadFile(path, f"byte {error.start}", "is no UTF-8 text") from None
 
 
+class GivenTwice(ValueError):
+    """A key that one object names twice: the message is the key."""
+
+
+def one_of_each(pairs):
+    """A dict of pairs of key and value; GivenTwice if a key is there twice."""
+    found = {}
+    for key, value in pairs:
+        if key in found:
+            raise GivenTwice(shown(key)[1:-1] if isinstance(key, str) else shown(key))
+        found[key] = value
+    return found
+
+
 def read_json(path, largest=LARGEST):
     """What a JSON file holds, by the letter of RFC 8259; an object must not name a key twice.
 
@@ -79,14 +95,6 @@ def read_json(path, largest=LARGEST):
             raise BadFile(path, "", f"holds {text[:SHOWN]}, too large a number")
         return value
 
-    def one_of_each(pairs):
-        found = dict(pairs)
-        if len(found) < len(pairs):
-            seen = set()
-            twice = next(name for name, _ in pairs if name in seen or seen.add(name))
-            raise BadFile(path, shown(twice)[1:-1], "is given twice in one object")
-        return found
-
     text = read_text(path, largest)
     try:
         return json.loads(
@@ -94,6 +102,8 @@ def read_json(path, largest=LARGEST):
         )
     except BadFile:
         raise
+    except GivenTwice as error:
+        raise BadFile(path, str(error), "is given twice in one object") from None
     except json.JSONDecodeError as error:
         place = f"line {error.lineno}, column {error.colno}"
         raise BadFile(path, place, f"is no JSON: {error.msg}") from None
@@ -112,29 +122,54 @@ def read_object(path, largest=LARGEST):
 
 
 @contextmanager
+def named(path):
+    """An OSError in the block that names no file, or a temporary one, names `path`."""
+    try:
+        yield
+    except OSError as error:
+        if error.filename is not None and TEMPORARY not in str(error.filename):
+            raise
+        reason = error.strerror or str(error) or type(error).__name__
+        if error.errno is None:
+            raise OSError(f"{path}: could not be written: {reason}") from error
+        raise OSError(error.errno, f"could not be written: {reason}", str(path)) from error
+
+
+@contextmanager
 def replacing(path):
     """Give a path to write to, which takes the place of `path` at the end of the block.
 
-    Readers see either the old file or the new one. Where the block ends by an error the old one
-    stays, and what was written is removed; an OSError names the file.
+    Readers see either the old file or the new one, also after a power cut. Where the block ends by
+    an error the old one stays, and what was written is removed; an OSError names the file. A link
+    at `path` is replaced itself.
     """
     path = Path(path)
-    part = path.with_name(path.name + ".part")
-    try:
-        yield part
-        os.replace(part, path)
-    except BaseException as error:
-        part.unlink(missing_ok=True)
-        if isinstance(error, OSError) and error.filename is None:
-            reason = error.strerror or str(error) or type(error).__name__
-            raise OSError(error.errno, f"could not be written: {reason}", str(path)) from error
-        raise
+    with named(path):
+        part = _new_file(path)
+        try:
+            yield part
+            flush(part)
+            os.replace(part, path)
+        except BaseException:
+            part.unlink(missing_ok=True)
+            raise
+    with suppress(OSError):  # not every file system can, and no file is lost without it
+        flush(path.parent)
+
+
+def _new_file(path):
+    """Make an empty file beside `path` under a name that nothing else has; returns its Path."""
+    while True:
+        new = path.with_name(TEMPORARY + secrets.token_hex(4))
+        with suppress(FileExistsError):
+            os.close(os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o666))
+            return new
 
 
 def replace_text(path, text):
     """Write a text file so that readers see either the old one or the new one."""
     with replacing(path) as part:
-        part.write_text(text)
+        part.write_text(text, encoding="utf-8")
 
 
 def write_json(path, content):
@@ -146,8 +181,20 @@ def settle(folder):
     """Wait until all in `folder` is on the disk, so that a power cut cannot take it back."""
     folder = Path(folder)
     for path in [*folder.rglob("*"), folder]:
-        handle = os.open(path, os.O_RDONLY)
-        try:
-            os.fsync(handle)
-        finally:
-            os.close(handle)
+        flush(path)
+
+
+def add_to_sum(checksum, path, size=-1):
+    """Add a file's first `size` bytes, -1: all, to a checksum of hashlib, and give that back."""
+    with open(path, "rb") as file:
+        checksum.update(file.read(size))
+    return checksum
+
+
+def flush(path):
+    """Wait until a file, or the names in a folder, are on the disk."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)

@@ -19,6 +19,7 @@ import numpy as np
 
 from .files import BadFile, read_object, replace_text, shown
 from .geometry import MOUNTAIN, VALLEY
+from .history import is_value
 
 SPEC = 1.2
 LETTERS = "BMVFUCJ"
@@ -34,6 +35,7 @@ UNITS = {  # metres
 MOST_FRAMES = 100_000
 MOST_ENTRIES = 50_000_000  # numbers in all frames together, once those inherited are counted
 FARTHEST = 1e12  # of coordinates, in any unit
+ROUNDED = 1e-6  # degrees beyond 180 that are taken for an error of rounding
 LARGEST_ID = 2**31 - 1
 
 _TEXTS = {"title": "frame_title", "description": "frame_description", "author": "frame_author"}
@@ -172,7 +174,10 @@ def read_fold(path):
 def _check_spec(path, top):
     """Refuse files of a later specification, which may mean something else by the same words."""
     spec = top.get("file_spec", SPEC)
-    if not _is_number(spec) or not 1 <= spec < 2:
+    number = spec
+    if isinstance(spec, str) and is_value(spec):  # as some programs write it
+        number = float(spec)
+    if not _is_number(number) or not 1 <= number < 2:
         raise BadFile(path, "file_spec", f"is {shown(spec)}; specifications 1 to 1.2 are read")
 
 
@@ -394,11 +399,11 @@ def _letters(path, place, value, size):
 def _angles(path, place, value, size):
     """Fold angles (E,) [deg], not a number for null."""
     for i, angle in enumerate(_per_edge(path, place, value, size, "angles")):
-        if angle is not None and not (_is_number(angle) and -180 <= angle <= 180):
+        if angle is not None and not (_is_number(angle) and abs(angle) <= 180 + ROUNDED):
             raise BadFile(
                 path, f"{place}[{i}]", f"is {shown(angle)}; must be degrees from -180 to 180"
             )
-    return _frozen(np.array(value, dtype=float))
+    return _frozen(np.clip(np.array(value, dtype=float), -180, 180))
 
 
 def _frozen(array):

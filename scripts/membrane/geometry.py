@@ -9,6 +9,10 @@ import numpy as np
 
 MOUNTAIN = 1
 VALLEY = -1
+NEAR = 1e-6  # of a sheet's width: nodes that are nearer make the time step hopelessly short
+EVEN = 1e-6  # rad: angles nearer to each other count as equal
+MOST_CELLS = 100  # along each axis of the grid in which near pairs are sought
+MOST_PAIRS = 500_000  # that are looked at together, for the sake of memory
 
 
 def unique_sides(triangles):
@@ -84,6 +88,44 @@ def triangle_angles(nodes, triangles):
     behind = np.roll(corners, 1, axis=1) - corners
     sine = np.linalg.norm(np.cross(ahead, behind), axis=2)
     return np.arctan2(sine, np.einsum("tij,tij->ti", ahead, behind))
+
+
+def cut_quadrangles(nodes, quadrangles):
+    """Each quadrangle cut in two along the diagonal that leaves the smaller largest angle.
+
+    Flat triangles would get a negative stiffness. Where both are as good, from the first corner.
+
+    Parameters
+    ----------
+    nodes : (N, 3) float
+        Positions [m].
+    quadrangles : (n, 4) int
+        Corners, all round.
+
+    Returns
+    -------
+    (2 n, 3) int
+        Corners of triangles, run the same way round.
+
+    Raises
+    ------
+    ValueError
+        If sides of a quadrangle cross.
+    """
+    ways = np.stack(
+        [quadrangles[:, [[0, 1, 2], [0, 2, 3]]], quadrangles[:, [[1, 2, 3], [1, 3, 0]]]]
+    )
+    upward = area_vectors(nodes, ways.reshape(-1, 3)).reshape(*ways.shape)
+    whole = upward[0].sum(axis=1)
+    outside = np.any(np.einsum("wqti,qi->wqt", upward, whole) <= 0, axis=2)
+    worst = triangle_angles(nodes, ways.reshape(-1, 3)).reshape(2, -1, 6).max(axis=2)
+    worst[outside] = np.inf
+    if np.any(np.all(outside, axis=0)):
+        q = int(np.argmax(np.all(outside, axis=0)))
+        middle = nodes[quadrangles[q]].mean(axis=0).tolist()
+        raise ValueError(f"the sides of the quadrangle round {middle} m cross")
+    best = np.where(worst[1] < worst[0] - EVEN, 1, 0)
+    return ways[best, np.arange(len(best))].reshape(-1, 3)
 
 
 def crease_corners(triangles, creases):
@@ -170,6 +212,40 @@ def crease_angles(nodes, triangles, creases, signs):
     return np.where(angles <= -np.pi / 2, angles + 2 * np.pi, angles)
 
 
+def nearness(points):
+    """Below which distance [m] `points` (N, 3) of a sheet count as one: NEAR of its width."""
+    return NEAR * np.sort(np.ptp(points, axis=0))[1]
+
+
+def twins(points, near):
+    """Pairs (n, 2) of rows of `points` (N, 3) no farther than `near` apart [m], in order."""
+    # Sorted along a direction in which few points of a grid lie side by side.
+    order = np.argsort(points @ (0.534, 0.633, 0.561))
+    places, found = points[order], [np.empty((0, 2), dtype=int)]
+    along = places @ (0.534, 0.633, 0.561)
+    for ahead in range(1, len(order)):
+        close = np.flatnonzero(along[ahead:] - along[:-ahead] <= near)
+        if not len(close):
+            break
+        apart = np.linalg.norm(places[close + ahead] - places[close], axis=1)
+        close = close[apart <= near]
+        found.append(np.column_stack([order[close], order[close + ahead]]))
+    pairs = np.sort(np.concatenate(found), axis=1)
+    return pairs[np.lexsort(pairs.T[::-1])]
+
+
+def pieces(count, sides):
+    """Number (N,) of the piece that each of `count` nodes belongs to, joined by `sides` (E, 2)."""
+    root = np.arange(count)
+    while len(sides):
+        low, high = np.sort(root[sides], axis=1).T
+        sides, low, high = (a[low != high] for a in (sides, low, high))
+        np.minimum.at(root, high, low)
+        while not np.array_equal(root, root[root]):
+            root = root[root]
+    return np.unique(root, return_inverse=True)[1]
+
+
 def crossings(nodes, sides, triangles):
     """Pairs of a side and a triangle that cut each other.
 
@@ -189,16 +265,73 @@ def crossings(nodes, sides, triangles):
     (P, 2) int
         Rows of `sides` and of `triangles`.
     """
-    corners = nodes[triangles]
-    low, high = corners.min(axis=1), corners.max(axis=1)
-    found = []
-    for i, (start, end) in enumerate(nodes[sides]):
-        near = np.all((low <= np.maximum(start, end)) & (high >= np.minimum(start, end)), axis=1)
-        near &= ~np.isin(triangles, sides[i]).any(axis=1)
-        rows = np.flatnonzero(near)
-        hit = rows[_pierces(start, end, corners[rows])]
-        found.append(np.column_stack([np.full(len(hit), i), hit]))
-    return np.concatenate(found) if found else np.empty((0, 2), dtype=int)
+    found = [np.empty((0, 2), dtype=int)]
+    if not (len(sides) and len(triangles)):
+        return found[0]
+    ends, corners = nodes[sides], nodes[triangles]
+    for side, triangle in _near_pairs(ends, corners):
+        apart = np.all(sides[side][:, :, None] != triangles[triangle][:, None], axis=(1, 2))
+        side, triangle = side[apart], triangle[apart]
+        hit = _pierces(ends[side, 0], ends[side, 1], corners[triangle])
+        found.append(np.column_stack([side, triangle])[hit])
+    pairs = np.concatenate(found)
+    return pairs[np.lexsort(pairs.T[::-1])]
+
+
+def _near_pairs(ones, others):
+    """Yield, piece by piece, the pairs of point sets whose boxes touch, each pair once.
+
+    Parameters
+    ----------
+    ones, others : (m, p, 3) and (n, q, 3) float
+        Sets of points [m].
+
+    Yields
+    ------
+    rows, rows : (k,) int
+        Of `ones` and of `others`.
+    """
+    low, high = others.min(axis=1), others.max(axis=1)
+    least, most = ones.min(axis=1), ones.max(axis=1)
+    # Cells like the boxes: in a stack of thin layers they are flat, too.
+    cell = np.maximum(2 * np.mean(high - low, axis=0), np.ptp(low, axis=0) / MOST_CELLS)
+    corner, cell = low.min(axis=0), np.where(cell > 0, cell, 1.0)
+
+    def cells(points):
+        return np.clip((points - corner) // cell, -1, MOST_CELLS + 1).astype(int)
+
+    def key(place):
+        return np.ravel_multi_index(tuple(place.T + 1), (MOST_CELLS + 3,) * 3)
+
+    def all_cells(first, last):
+        """Rows and keys of all cells from `first` to `last` (n, 3)."""
+        size = last - first + 1
+        row, step = _counted(np.prod(size, axis=1))
+        step, z = np.divmod(step, size[row, 2])
+        x, y = np.divmod(step, size[row, 1])
+        return row, key(first[row] + np.column_stack([x, y, z]))
+
+    first, begin = cells(low), cells(least)
+    other, at = all_cells(first, cells(high))
+    order = np.argsort(at, kind="stable")
+    other, at = other[order], at[order]
+    one, wanted = all_cells(begin, cells(most))
+    start, stop = (np.searchsorted(at, wanted, side=side) for side in ("left", "right"))
+    shares = np.cumsum(stop - start) // MOST_PAIRS
+    for piece in np.split(np.arange(len(one)), np.flatnonzero(np.diff(shares)) + 1):
+        row, step = _counted(stop[piece] - start[piece])
+        row = piece[row]
+        a, b = one[row], other[start[row] + step]
+        touch = np.all((least[a] <= high[b]) & (most[a] >= low[b]), axis=1)
+        # Boxes that have several cells in common count in the first of them.
+        touch &= key(np.maximum(begin[a], first[b])) == wanted[row]
+        yield a[touch], b[touch]
+
+
+def _counted(counts):
+    """For each i, `counts[i]` times i, and beside it 0, 1, … up to `counts[i]` - 1."""
+    row = np.repeat(np.arange(len(counts)), counts)
+    return row, np.arange(len(row)) - (np.cumsum(counts) - counts)[row]
 
 
 def _pierces(start, end, corners):
@@ -208,7 +341,8 @@ def _pierces(start, end, corners):
         return np.sum(np.cross(q - p, r - p) * (s - p), axis=-1)
 
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    tiny = 1e-9 * np.max(np.ptp(corners, axis=1), axis=1, initial=0) ** 3
+    tiny = 1e-9 * np.max(np.ptp(corners, axis=1), axis=1, initial=0)
+    tiny *= np.linalg.norm(np.cross(b - a, c - a), axis=1)
     below, above = volume(a, b, c, start), volume(a, b, c, end)
     split = (below * above < 0) & (np.minimum(abs(below), abs(above)) > tiny)
     turns = [volume(start, end, *pair) for pair in ((a, b), (b, c), (c, a))]

@@ -2,8 +2,12 @@
 """Files of results: ParaView time series of a mesh, and a table of scalars over time."""
 
 import csv
+import io
 import math
 import os
+import re
+from contextlib import contextmanager
+from hashlib import sha256
 from pathlib import Path
 from xml.etree import ElementTree
 from xml.sax.saxutils import quoteattr
@@ -12,9 +16,10 @@ import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkObject, vtkPoints
 from vtkmodules.vtkCommonDataModel import VTK_LINE, VTK_TRIANGLE, vtkCellArray, vtkUnstructuredGrid
+from vtkmodules.vtkCommonMisc import vtkErrorCode
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
 
-from .files import BadFile, read_text, replace_text, write_json
+from .files import BadFile, add_to_sum, flush, named, read_text, replace_text, write_json
 from .history import is_value, read_history  # noqa: F401  (belongs to HistoryWriter; free of VTK)
 
 
@@ -51,12 +56,14 @@ class VtkSeries:
         if cells.ndim != 2 or cells.shape[1] not in CELL_TYPES:
             raise ValueError(f"cells of shape {cells.shape}: must be (M, 2) or (M, 3)")
         self.folder, self.name, self.cells = Path(folder), name, cells
-        self.frames = [(time, self._file(i)) for i, time in enumerate(times)]
+        self.frames = [(time, _frame_file(name, i)) for i, time in enumerate(times)]
         self._cell_array = cell_array(cells)
+        self._sum, self._settled = sha256(), 0  # of the first frames
         self.folder.mkdir(parents=True, exist_ok=True)
         kept = {file for _, file in self.frames}
-        for earlier in self.folder.glob(f"{name}_*.vtu"):
-            if earlier.name not in kept:
+        of_this_name = re.compile(re.escape(name) + r"_\d{6,}\.vtu")
+        for earlier in self.folder.iterdir():
+            if of_this_name.fullmatch(earlier.name) and earlier.name not in kept:
                 earlier.unlink()
         if kept:
             self._list_frames()
@@ -94,19 +101,27 @@ class VtkSeries:
             array = numpy_to_vtk(_finite(label, values), deep=True)
             array.SetName(label)
             grid.GetCellData().AddArray(array)
-        path = self.folder / self._file(len(self.frames))
+        path = self.folder / _frame_file(self.name, len(self.frames))
         _write_grid(grid, path)
         self.frames.append((float(time), path.name))
         self._list_last_frame()
         return path
 
-    def positions(self):
-        """Positions of the nodes [m] in each frame, (N, 3) double, read back from the files."""
-        return [read_frame(self.folder / name)[0].copy() for _, name in self.frames]
+    def state(self):
+        """What it takes to go on with the series, ready for JSON; all frames are on the disk then.
 
-    def _file(self, number):
-        """Name of the file of a frame."""
-        return f"{self.name}_{number:06d}.vtu"
+        Gives the frames' `times` [s] and the checksum `sum` of their files.
+        """
+        for _, name in self.frames[self._settled :]:
+            flush(self.folder / name)
+            add_to_sum(self._sum, self.folder / name)
+        self._settled = len(self.frames)
+        flush(self.folder)
+        return {"times": [time for time, _ in self.frames], "sum": self._sum.hexdigest()}
+
+    def positions(self, number):
+        """Positions (N, 3) [m] of the nodes in a frame, double, read back from its file."""
+        return read_frame(self.folder / self.frames[number][1])[0].copy()
 
     def _list_last_frame(self):
         """Add the last frame to the .pvd file, over its closing lines and in one piece.
@@ -116,7 +131,8 @@ class VtkSeries:
         if len(self.frames) == 1:
             self._list_frames()
             return
-        with open(self.folder / f"{self.name}.pvd", "r+b") as stream:
+        path = self.folder / f"{self.name}.pvd"
+        with named(path), open(path, "r+b") as stream:
             stream.seek(-len(PVD_FOOT), os.SEEK_END)
             stream.write((_pvd_line(*self.frames[-1]) + PVD_FOOT).encode())
 
@@ -124,6 +140,22 @@ class VtkSeries:
         """Replace the .pvd file by one that lists all frames."""
         lines = "".join(_pvd_line(*frame) for frame in self.frames)
         replace_text(self.folder / f"{self.name}.pvd", PVD_HEAD + lines + PVD_FOOT)
+
+
+def _frame_file(name, number):
+    """Name of the file of a frame of a series."""
+    return f"{name}_{number:06d}.vtu"
+
+
+def is_whole_series(folder, name, state):
+    """Whether all frames are there that the `state` of a VtkSeries tells of, as they were then."""
+    checksum = sha256()
+    try:
+        for number in range(len(state["times"])):
+            add_to_sum(checksum, folder / _frame_file(name, number))
+    except OSError:
+        return False
+    return checksum.hexdigest() == state["sum"]
 
 
 def _pvd_line(time, file):
@@ -142,24 +174,31 @@ class HistoryWriter:
         The .csv file; overwritten.
     units : dict of str
         Unit by column name, in the order of the columns; "-" for none.
-    size : int, optional
-        Bytes to keep of an earlier table, which this one continues.
+    state : dict, optional
+        What `state()` gave of an earlier table, which this one continues.
     """
 
-    def __init__(self, path, units, size=None):
+    def __init__(self, path, units, state=None):
         self.path, self.columns = Path(path), tuple(units)
         self.path.parent.mkdir(parents=True, exist_ok=True)
         write_json(self.path.with_suffix(".units.json"), units)
-        self._file = open(self.path, "w" if size is None else "r+", newline="")
-        if size is None:
-            self._line(self.columns)
+        self._file = open(self.path, "r+b" if state else "wb")
+        self._size, self._sum = state["size"] if state else 0, sha256()
+        if state:
+            add_to_sum(self._sum, self.path, self._size)
+            self._file.truncate(self._size)
+            self._file.seek(self._size)
         else:
-            self._file.truncate(size)
-            self._file.seek(size)
+            self._line(self.columns)
 
-    def size(self):
-        """Bytes written so far."""
-        return self.path.stat().st_size
+    def state(self):
+        """What it takes to go on with the table, ready for JSON; all of it is on the disk then.
+
+        Gives its `size` [bytes] and its checksum `sum`.
+        """
+        os.fsync(self._file.fileno())
+        flush(self.path.parent)
+        return {"size": self._size, "sum": self._sum.hexdigest()}
 
     def write(self, values):
         """Append a line; `values` gives a finite number for every column by name.
@@ -189,8 +228,22 @@ class HistoryWriter:
         self.close()
 
     def _line(self, fields):
-        csv.writer(self._file, lineterminator="\n").writerow(fields)
-        self._file.flush()
+        text = io.StringIO()
+        csv.writer(text, lineterminator="\n").writerow(fields)
+        line = text.getvalue().encode()
+        with named(self.path):
+            self._file.write(line)
+            self._file.flush()
+        self._size += len(line)
+        self._sum.update(line)
+
+
+def is_whole_table(path, state):
+    """Whether a table holds what the `state` of a HistoryWriter tells of, as it was then."""
+    try:
+        return add_to_sum(sha256(), path, state["size"]).hexdigest() == state["sum"]
+    except OSError:
+        return False
 
 
 def list_series(path):
@@ -243,17 +296,24 @@ def _read_grid(path):
     if not Path(path).is_file():
         raise FileNotFoundError(f"{path}: there is no such file")
     reader = vtkXMLUnstructuredGridReader()
-    reader.SetFileName(str(path))
-    said = vtkObject.GetGlobalWarningDisplay()
-    vtkObject.GlobalWarningDisplayOff()
-    try:
+    reader.SetFileName(os.fsencode(path))
+    with _silent():
         reader.Update()
-    finally:
-        vtkObject.SetGlobalWarningDisplay(said)
     grid = reader.GetOutput()
     if not grid.GetNumberOfPoints() or not grid.GetNumberOfCells():
         raise BadFile(path, "", "could not be read")
     return grid
+
+
+@contextmanager
+def _silent():
+    """VTK says nothing itself."""
+    said = vtkObject.GetGlobalWarningDisplay()
+    vtkObject.GlobalWarningDisplayOff()
+    try:
+        yield
+    finally:
+        vtkObject.SetGlobalWarningDisplay(said)
 
 
 def cell_array(cells):
@@ -270,12 +330,18 @@ def cell_array(cells):
 def _write_grid(grid, path):
     """Write a grid as a .vtu file in binary; raise OSError if that fails."""
     writer = vtkXMLUnstructuredGridWriter()
-    writer.SetFileName(str(path))
+    writer.SetFileName(os.fsencode(path))
     writer.SetInputData(grid)
-    writer.SetCompressorTypeToLZ4()  # a fifth of zlib's time, somewhat larger
+    # LZ4 would take a fifth of the time, but meshio does not read it.
+    writer.SetCompressorTypeToZLib()
+    writer.SetCompressionLevel(1)
     writer.EncodeAppendedDataOff()  # bytes as they are, not as base64
-    if writer.Write() != 1:
-        raise OSError(f"{path}: could not be written")
+    with _silent():
+        writer.Write()
+    code = writer.GetErrorCode()  # which Write itself takes for success
+    if code:
+        reason = vtkErrorCode.GetStringFromErrorCode(code)
+        raise OSError(f"{path}: could not be written: {reason}")
 
 
 def _finite(name, values):

@@ -6,6 +6,7 @@ summary.json all come from it.
 """
 
 import argparse
+import os
 from dataclasses import asdict, dataclass, field, fields
 from math import inf, pi
 from numbers import Real
@@ -18,6 +19,9 @@ TABLE_1, TABLE_2, ASSUMED, RUN = "Table 1", "Table 2", "assumed", "run"
 # the largest lead that follows [s].
 TABLE_2_CASES = {"alpha_crease": (100.0, 1000.0), "beta": (0.0, 3.0, 30.0)}
 TABLE_2_DURATION = 1.2
+
+LARGEST_WHOLE = 2**31 - 1
+MOST_STEPS = 2**53  # of a run: more cannot be told apart
 
 
 def _parameter(default, unit, source, text, least=0.0, most=inf, above=False, choices=None):
@@ -37,6 +41,42 @@ def _parameter(default, unit, source, text, least=0.0, most=inf, above=False, ch
 
 
 parameter = _parameter  # for other scenes
+
+
+class Refused(argparse.ArgumentTypeError, ValueError):
+    """A word that cannot be what it should: argparse tells why, and others may catch it."""
+
+
+def number(word):
+    """A number from a word, as of the command line."""
+    try:
+        return float(word)
+    except ValueError:
+        raise Refused(f"must be a number, not {shown(word)}") from None
+
+
+def whole(word):
+    """A whole number from a word: 36, 36.0 and 1e3 are such."""
+    try:
+        value = int(word)
+    except ValueError:  # it has a point, an exponent, too many digits, or is none
+        value = number(word)
+        if value not in (inf, -inf) and not value.is_integer():
+            raise Refused(f"must be a whole number, not {shown(word)}") from None
+    if abs(value) > LARGEST_WHOLE:
+        raise Refused(f"{shown(word)} is too large a number")
+    return int(value)
+
+
+def check_name(path):
+    """Raise Refused unless the whole name of a file or a folder can be written as UTF-8."""
+    try:
+        os.path.abspath(path).encode()
+    except UnicodeEncodeError:
+        raise Refused(f"{str(path)!a}: names of files and folders must be UTF-8") from None
+
+
+PARSERS = {int: whole, float: number, str: str}  # of words
 
 
 @dataclass(frozen=True)
@@ -140,6 +180,7 @@ class SailParameters:
 
     def __post_init__(self):
         check(self)
+        check_steps(self.duration, self.dt)
 
     def as_dict(self):
         """Values by name."""
@@ -147,21 +188,38 @@ class SailParameters:
 
 
 def check(parameters):
-    """Raise ValueError naming the first of some parameters that is out of range."""
+    """Raise ValueError naming the first of some parameters that is out of range.
+
+    Others get the type that is theirs: 36.0 becomes 36, and 3 becomes 3.0, as may be.
+    """
     for item in fields(parameters):
-        _check(item, getattr(parameters, item.name))
+        value = getattr(parameters, item.name)
+        _check(item, value)
+        object.__setattr__(parameters, item.name, item.type(value))
+
+
+def check_steps(duration, dt):
+    """Raise ValueError if a duration [s] is more steps of `dt` [s] than can be counted."""
+    if duration / dt > MOST_STEPS:
+        raise ValueError(
+            f"duration = {duration} s must be at most {MOST_STEPS} steps of dt = {dt} s"
+        )
 
 
 def _check(item, value):
     """Raise ValueError naming parameter, value and range if it is out of range."""
     about = item.metadata
+    if item.type is bool:
+        if value not in (True, False):
+            raise ValueError(f"{item.name} = {shown(value)} must be true or false")
+        return
     if about["choices"]:
         if value not in about["choices"]:
             raise ValueError(
                 f"{item.name} = {shown(value)} must be one of {', '.join(about['choices'])}"
             )
         return
-    if not isinstance(value, Real):
+    if not isinstance(value, Real) or isinstance(value, bool):
         raise ValueError(f"{item.name} = {shown(value)} must be a number")
     try:
         float(value)
@@ -169,10 +227,13 @@ def _check(item, value):
         raise ValueError(f"{item.name} = {shown(value)} is too large a number") from None
     if item.type is int and not (abs(value) < inf and value == int(value)):
         raise ValueError(f"{item.name} = {value} must be a whole number")
+    if item.type is int and abs(value) > LARGEST_WHOLE:
+        raise ValueError(f"{item.name} = {shown(value)} is too large a number")
     low = value > about["least"] if about["above"] else value >= about["least"]
     if not (low and value <= about["most"] and abs(value) < inf):
         unit = "" if about["unit"] == "-" else " " + about["unit"]
-        raise ValueError(f"{item.name} = {value}{unit} must be {_range(about)}")
+        finite = " and finite" if value == inf else ""
+        raise ValueError(f"{item.name} = {value}{unit} must be {_range(about)}{finite}")
 
 
 def _range(about):
@@ -246,7 +307,7 @@ def parse(parser, kind=SailParameters, *, several=None, defaults=None, root=None
     """
     add_arguments(parser, kind, several, defaults)
     text = "take parameters that are not given from this JSON file, as summary.json of a run"
-    parser.add_argument("--parameters", metavar="FILE", help=text)
+    parser.add_argument("--parameters", type=_named, metavar="FILE", help=text)
     root = root or parser
     arguments = root.parse_args()
     file = getattr(arguments, "parameters", None)
@@ -255,6 +316,12 @@ def parse(parser, kind=SailParameters, *, several=None, defaults=None, root=None
         parser.set_defaults(**{n: v for n, v in values.items() if n not in (several or {})})
         arguments = root.parse_args()
     return arguments
+
+
+def _named(word):
+    """The name of a file from a word of the command line."""
+    check_name(word)
+    return word
 
 
 def add_argument(group, item, default):
@@ -275,7 +342,13 @@ def add_argument(group, item, default):
     metavar = None if choices else item.metadata["unit"].replace("-", "N")
     more = {"nargs": "+"} if isinstance(default, list) else {}
     group.add_argument(
-        flag, type=item.type, default=default, choices=choices, metavar=metavar, help=text, **more
+        flag,
+        type=PARSERS[item.type],
+        default=default,
+        choices=choices,
+        metavar=metavar,
+        help=text,
+        **more,
     )
 
 

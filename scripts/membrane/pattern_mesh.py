@@ -1,17 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Meshes of crease patterns by gmsh: triangles whose sides run along every edge of the pattern."""
 
-import os
 from collections import defaultdict
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass, replace
-from multiprocessing import get_context
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from .geometry import MOUNTAIN, VALLEY, area_vectors, crease_angles, side_rows, triangle_areas
 from .geometry import triangle_angles, unique_sides
+from .gmsh_process import GmshError, in_gmsh
 from .patterns import face_pairs
 
 MOST_TRIANGLES = 2_000_000
@@ -42,6 +39,10 @@ class SheetMesh:
         Folded positions to start from [m]; None: flat.
     groups : dict of (n,) int, node
         Nodes by name, as a file names them.
+    others : tuple of str
+        Names of those groups that make no creases.
+    notes : tuple of str
+        Sentences about what was changed or is doubtful.
     """
 
     nodes: np.ndarray
@@ -49,7 +50,9 @@ class SheetMesh:
     creases: np.ndarray
     crease_signs: np.ndarray
     start: np.ndarray = None
-    groups: dict = None
+    groups: dict = field(default_factory=dict)
+    others: tuple = ()
+    notes: tuple = ()
 
     @property
     def area(self):
@@ -116,7 +119,7 @@ def mesh_pattern(pattern, size=None):
         creases=creases,
         crease_signs=signs,
         start=None if start is None else start[origin],
-        groups={},
+        notes=pattern.notes,
     )
 
 
@@ -172,49 +175,26 @@ class _Raw:
 
 
 def _with_gmsh(pattern, size):
-    """What `_by_gmsh` gives, from a process of its own, for on absurd patterns gmsh ends it."""
-    with ProcessPoolExecutor(1, get_context("fork"), _say_nothing) as child:
-        try:
-            return child.submit(_by_gmsh, pattern, size).result()
-        except BrokenProcessPool:
-            raise ValueError("gmsh cannot mesh the pattern: it crashes") from None
-
-
-def _say_nothing():
-    """Send standard error to nowhere."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-
-
-def _by_gmsh(pattern, size):
-    """Let gmsh mesh every face so that the meshes meet along the edges."""
+    """The _Raw mesh of a pattern."""
     try:
-        import gmsh
-    except ImportError:
-        raise ValueError(
-            "meshing a crease pattern needs gmsh: apt-get install python3-gmsh"
-        ) from None
-    gmsh.initialize(readConfigFiles=False)
-    try:
-        for option, value in (
-            ("General.Terminal", 0),
-            ("General.NumThreads", 1),  # the same mesh everywhere
-            ("General.ExpertMode", 1),  # it must not wait for answers
-            ("Mesh.Algorithm", 6),  # frontal Delaunay: nearly equilateral triangles
-            ("Mesh.MeshSizeExtendFromBoundary", 0),
-            ("Mesh.MeshSizeMin", size),
-            ("Mesh.MeshSizeMax", size),
-        ):
-            gmsh.option.setNumber(option, value)
-        gmsh.model.add("pattern")
-        _describe(gmsh, pattern, size)
-        gmsh.model.mesh.generate(2)
-        return _collect(gmsh, pattern)
-    except ValueError:
-        raise
-    except Exception as error:  # gmsh raises Exception itself
+        return in_gmsh(_by_gmsh, pattern, size)
+    except GmshError as error:
         raise ValueError(f"gmsh cannot mesh the pattern: {error}") from None
-    finally:
-        gmsh.finalize()
+
+
+def _by_gmsh(gmsh, pattern, size):
+    """Let gmsh mesh every face so that the meshes meet along the edges."""
+    for option, value in (
+        ("Mesh.Algorithm", 6),  # frontal Delaunay: nearly equilateral triangles
+        ("Mesh.MeshSizeExtendFromBoundary", 0),
+        ("Mesh.MeshSizeMin", size),
+        ("Mesh.MeshSizeMax", size),
+    ):
+        gmsh.option.setNumber(option, value)
+    gmsh.model.add("pattern")
+    _describe(gmsh, pattern, size)
+    gmsh.model.mesh.generate(2)
+    return _collect(gmsh, pattern)
 
 
 def _describe(gmsh, pattern, size):

@@ -5,28 +5,33 @@ The sail starts flat, or in the pattern's folded form, turning as a whole; it fl
 hub is driven. Its centre of mass lies on the spin axis.
 """
 
-from dataclasses import asdict, dataclass, field, fields
-from math import pi
+from dataclasses import asdict, dataclass, field, fields, replace
+from math import ceil, pi
 from pathlib import Path
 
 import numpy as np
 from yade import wrapper as yade_classes
 
-from . import measures, plots, scene
+from . import Membrane, measures, plots, scene
 from .files import write_json
 from .fold_format import FoldFile, FoldFrame, fold_angles, read_fold, write_fold
-from .geometry import area_vectors, crease_angles, side_rows, triangle_areas
+from .geometry import area_vectors, crease_angles, crossings, side_rows, triangle_areas
 from .mesh import tip_masses
 from .msh import read_msh
-from .parameters import RUN, SailParameters, check, parameter
-from .pattern_mesh import mesh_pattern
+from .parameters import RUN, SailParameters, check, check_steps, parameter
+from .pattern_mesh import default_size, mesh_pattern
 from .patterns import crease_pattern, nearest_pose
+from .progress import warn
 from .record import LEDGER_UNITS, Recorder
-from .sail import Stopwatch, add_membrane, check_step, counts, instants, march, nearest
-from .sail import save_last_good, set_engines, versions, write_page
+from .sail import Stopwatch, add_membrane, check_step, counts, instants, last_good_saved, march
+from .sail import nearest, set_engines, versions, write_page
+from .sheet_words import about_slow_sides, doubts
 
 SHEET, SPIN = "sheet", "spin"
+MOST_FINER = 100_000  # triangles of a mesh that is made finer than asked for, about
+REMESH = ": remesh, or set allowNegativeStiffness"  # what Membrane says of too flat a triangle
 STEP = 0.5  # of the critical one, by default
+TURN_STEP = 0.05  # rad: what the sail turns in a step, at most, by default
 TURN = np.radians(20)  # by which the outline turns at a corner, at least
 UNITS = {
     "time": "s",
@@ -119,6 +124,8 @@ class PatternSail:
         With tip masses; driven.
     lines : tuple
         Sides (E, 2) and FOLD letters (E,) of the mesh.
+    used : tuple of str
+        Names of the file's groups that are tips or hub.
     """
 
     nodes: np.ndarray
@@ -129,6 +136,7 @@ class PatternSail:
     tips: np.ndarray
     hub: np.ndarray
     lines: tuple
+    used: tuple = ()
 
 
 def read_sheet(path, p):
@@ -158,9 +166,38 @@ def read_sheet(path, p):
         pattern = crease_pattern(
             content, p.unit or None, None if p.start_frame < 0 else p.start_frame, p.flat
         )
-        return mesh_pattern(pattern, p.size or None)
+        return _meshed(pattern, p)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
+
+
+def _meshed(pattern, p):
+    """The SheetMesh of a pattern, finer than asked for if only that makes no triangle too flat."""
+    size = p.size or default_size(pattern.area)
+    asked = mesh_pattern(pattern, size)
+    if not _is_too_flat(asked, p):
+        return asked
+    for finer in (size / 2, size / 4):
+        if pattern.area / finer**2 > MOST_FINER / 2.3:
+            break
+        sheet = mesh_pattern(pattern, finer)
+        if not _is_too_flat(sheet, p):
+            note = (
+                f"with sides of {size:.3g} m a triangle would be too flat: they are made "
+                f"{finer:.3g} m long, which gives {len(sheet.triangles)} triangles"
+            )
+            return replace(sheet, notes=(*sheet.notes, note))
+    return asked  # which `build` refuses
+
+
+def _is_too_flat(sheet, p):
+    """Whether equation (5) gives a side of a SheetMesh a negative stiffness."""
+    film = scene.film(p.young, p.poisson, p.density, p.thickness)
+    try:
+        Membrane(material=film, nodes=sheet.nodes, triangles=sheet.triangles)
+    except ValueError as error:
+        return REMESH in str(error)
+    return False
 
 
 def place(sheet, p):
@@ -175,20 +212,21 @@ def place(sheet, p):
     ValueError
         If no node lies within the hub's radius.
     """
-    tips = _tips(sheet, p.tips)
+    named = p.tips == "corners" and len(sheet.groups.get("tips", ())) > 0
+    tips = sheet.groups["tips"] if named else _tips(sheet, p.tips)
     mass = _node_masses(sheet, p, tips)
     nodes = sheet.nodes - np.average(sheet.nodes, axis=0, weights=mass)
     folded = sheet.start is not None and not p.flat
     start = nearest_pose(sheet.start, nodes, mass) if folded else nodes
     hub = _hub(sheet, nodes, p.hub_radius)
-    return PatternSail(
-        nodes, sheet.triangles, sheet.creases, sheet.crease_signs, start, tips, hub, sheet.lines()
-    )
+    used = ("hub", "tips") if named else ("hub",)
+    mesh = nodes, sheet.triangles, sheet.creases, sheet.crease_signs
+    return PatternSail(*mesh, start, tips, hub, sheet.lines(), used)
 
 
 def _hub(sheet, nodes, radius):
     """Nodes (n,) that are driven, of `nodes` (N, 3) [m] placed on the axis."""
-    named = np.asarray((sheet.groups or {}).get("hub", ()), dtype=int)
+    named = np.asarray(sheet.groups.get("hub", ()), dtype=int)
     if radius == 0:
         return named
     away = np.hypot(nodes[:, 0], nodes[:, 1])
@@ -204,8 +242,6 @@ def _tips(sheet, choice):
     """Nodes (n,) that bear tip masses."""
     if choice == "none":
         return np.empty(0, dtype=int)
-    if choice == "corners" and len((sheet.groups or {}).get("tips", ())):
-        return sheet.groups["tips"]
     around = sheet.rim
     away = sheet.nodes - sheet.nodes.mean(axis=0)
     radius = np.hypot(away[:, 0], away[:, 1])
@@ -261,7 +297,7 @@ def build(sail, p):
     try:
         membrane = add_membrane(sail, sail.start, p)
     except ValueError as error:
-        refused, remesh, _ = str(error).partition(": remesh, or set allowNegativeStiffness")
+        refused, remesh, _ = str(error).partition(REMESH)
         advice = "; mesh it otherwise, a crease pattern by another --size" if remesh else ""
         raise ValueError(refused + advice) from None
     made = set_engines(membrane, p, driven=[membrane.bodyIds[i] for i in sail.hub])
@@ -322,17 +358,20 @@ def fly(sheet, p, folder, pictures=True, shown=None, page=True):
     sail = place(sheet, p)
     made = build(sail, p)
     critical = made.forces.criticalTimeStep()
-    dt = p.dt or STEP * critical
-    check_step(dt, critical, p)
-    yade_classes.Omega().dt = dt
+    steps = _steps(p, critical)
+    check_step(steps.dt, critical, p)
+    film = made.membrane
+    springs = (np.array(a) for a in (film.sides, film.stiffnesses, film.masses))
+    for doubt in [*doubts(sheet), *about_slow_sides(sheet.nodes, *springs, p.zeta)]:
+        warn(doubt)
+    yade_classes.Omega().dt = steps.dt
     scene.release(made, p.omega, [])
     made.rotation.dead, made.spool.dead = not len(sail.hub), True
     recorder = PatternRecorder(folder, sail, made)
     watch.lap("build")
     try:
-        march(_Steps(dt, p), recorder, lambda row: f"area {row['projected_area']:.3f}")
-    except RuntimeError as error:
-        raise RuntimeError(f"{error}. {save_last_good(made, folder)}") from error
+        with last_good_saved(made, folder, yade_classes.Omega().iter):
+            march(steps, recorder, lambda row: f"area {row['projected_area']:.3f}")
     finally:
         recorder.close()
     wall = watch.lap("run")
@@ -341,6 +380,9 @@ def fly(sheet, p, folder, pictures=True, shown=None, page=True):
     if pictures:
         draw(sail, recorder, history, folder, shown)
     momentum = history["angular_momentum"] - history["angular_impulse"]
+    crossed = len(crossings(recorder.frames[-1], sail.lines[0], sail.triangles))
+    if crossed:
+        warn(f"layers cross at the end: {crossed} times a side passes through a triangle")
     summary = {
         "parameters": asdict(p),
         "versions": versions(),
@@ -351,7 +393,7 @@ def fly(sheet, p, folder, pictures=True, shown=None, page=True):
             "film_mass": p.density * p.thickness * made.membrane.area,
         },
         "critical_time_step": critical,
-        "dt": dt,
+        "dt": steps.dt,
         "measures": {
             **{f"final_{name}": float(history[name][-1]) for name in list(UNITS)[1:7]},
             "largest_projected_area": float(history["projected_area"].max()),
@@ -361,6 +403,7 @@ def fly(sheet, p, folder, pictures=True, shown=None, page=True):
             "largest_energy": float(history["kinetic_energy"].max()),
             **measures.energy_errors(history),
             "largest_change_of_angular_momentum": float(np.ptp(momentum)),
+            "final_crossings": crossed,
         },
     }
     write_json(folder / "summary.json", summary)
@@ -372,13 +415,38 @@ def fly(sheet, p, folder, pictures=True, shown=None, page=True):
 
 @dataclass(frozen=True)
 class _Steps:
-    """What `march` asks for, with the time step that was chosen."""
+    """What `march` asks for, with steps and rows that end at the duration."""
 
     dt: float
-    parameters: PatternParameters
+    history_interval: float
+    shapes_interval: float
+    duration: float
 
-    def __getattr__(self, name):
-        return getattr(self.parameters, name)
+
+def _steps(p, critical):
+    """_Steps by PatternParameters, not longer than asked for, with the `critical` step [s] or not.
+
+    Raises
+    ------
+    ValueError
+        If there are no or too many steps.
+    """
+    if not 0 < p.duration >= p.dt:
+        raise ValueError(
+            f"duration = {p.duration} s: must be > 0" + (f" and >= dt = {p.dt} s" * (p.dt > 0))
+        )
+    longest = min(p.dt or STEP * critical, p.duration)
+    if not p.dt and p.omega > 0:
+        longest = min(longest, TURN_STEP / p.omega)
+    check_steps(p.duration, longest)
+    rows = _parts(p.duration, max(p.history_interval, longest))
+    interval = p.duration / rows
+    return _Steps(interval / _parts(interval, longest), interval, p.shapes_interval, p.duration)
+
+
+def _parts(whole, most):
+    """Into how many equal parts to divide `whole`, so that none is longer than `most`."""
+    return max(1, ceil(whole / most * (1 - 1e-9)))
 
 
 def draw(sail, recorder, history, folder, shown=None):

@@ -4,6 +4,7 @@
 A pattern is a flat sheet of polygons, in metres, in the plane z = 0, its faces counter-clockwise
 seen from +z. Faces may be non-convex and have holes and slits. Where a file gives no faces they
 are found by walking round the planar graph of its edges; a file of a folded form only is unrolled.
+A pattern in another plane, or seen from below, is turned as a whole.
 """
 
 from collections import defaultdict, deque
@@ -11,12 +12,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .geometry import nearness
+from .orientation import plane_normal
+from .pattern_ways import area_vector, one_way_round, plain, seen_from_above, without_repeats
+from .pattern_ways import without_twins
+
 STRETCH = 0.01  # by which edges of a folded form may be longer than the pattern's
 SHORTENED = 0.5  # and shorter: film between the ends may have buckled
 GAP = 1e-4  # of the pattern's size: what folding by angles may leave open
 LOOSE = 0.1  # degrees: to which fold angles must fit together
 MOST_EDGES = 100_000  # more would take minutes to check
 SAME_PLACE = 1e-9  # of the pattern's size
+ROUNDS = 1000  # of evening out an unrolled sheet, at most
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +47,8 @@ class CreasePattern:
         For each face further loops round its holes, clockwise.
     folded : (V, 3) float or None
         Where the folded sheet starts [m].
+    notes : tuple of str
+        Sentences about what was changed.
     """
 
     vertices: np.ndarray
@@ -49,6 +58,7 @@ class CreasePattern:
     faces: tuple
     holes: tuple
     folded: np.ndarray = None
+    notes: tuple = ()
 
     @property
     def size(self):
@@ -114,6 +124,8 @@ def crease_pattern(content, unit=None, start=None, unfolded=False):
     source = frames[form if flat is None else flat]
     scale = _metres(source, unit)
     edges, letters, faces = _edges_of(source)
+    if not 0 < len(edges) <= MOST_EDGES:
+        raise ValueError(f"the pattern has {len(edges)} edges; must be 1 to {MOST_EDGES}")
     pattern = CreasePattern(
         vertices=scale * source.coords,
         edges=edges,
@@ -122,21 +134,27 @@ def crease_pattern(content, unit=None, start=None, unfolded=False):
         faces=faces,
         holes=((),) * len(faces),
     )
-    if flat is None:
-        pattern = replace(pattern, vertices=_unrolled(pattern))
+    _check_lengths(pattern)
+    pattern = pattern if flat is None else without_twins(pattern)
+    pattern = one_way_round(without_repeats(pattern))
+    flattened = _unrolled if flat is None else seen_from_above
+    pattern = replace(pattern, vertices=flattened(pattern))
     pattern = _with_faces(pattern)
     _check(pattern)
+    doubts = ()
+    if form is None and pattern.angles is not None and 0 < np.abs(pattern.angles).max() <= np.pi:
+        doubts = ("no fold angle is larger than pi: are they in radians? FOLD has degrees",)
     try:
         folded = _folded_start(pattern, frames, form if form != flat else None, unit)
         if folded is not None and _is_folded_flat(pattern, folded):
             if start is not None:
                 raise ValueError(f"frame {start} is folded flat: it has no height to open from")
             folded = None
-    except ValueError:
+    except ValueError as error:
         if not unfolded:
-            raise
+            raise ValueError("; ".join([str(error), *doubts])) from None
         folded = None
-    return replace(pattern, folded=folded)
+    return replace(pattern, folded=folded, notes=(*pattern.notes, *doubts))
 
 
 def _folded_start(pattern, frames, form, unit):
@@ -161,7 +179,7 @@ def _is_flat(frame):
     """Whether a frame is a sheet in the plane."""
     if frame.coords is None or len(frame.coords) < 3 or "foldedForm" in frame.classes:
         return False
-    return np.ptp(frame.coords[:, 2]) <= SAME_PLACE * np.max(np.ptp(frame.coords, axis=0))
+    return plane_normal(frame.coords) is not None
 
 
 def _is_folded(frame, count=None):
@@ -174,7 +192,7 @@ def _is_folded(frame, count=None):
         and len(frame.coords) >= 3
         and count in (None, len(frame.coords))
         and "creasePattern" not in frame.classes
-        and np.ptp(frame.coords[:, 2]) > SAME_PLACE * np.max(np.ptp(frame.coords, axis=0))
+        and plane_normal(frame.coords) is None
     )
 
 
@@ -233,27 +251,36 @@ def _with_faces(pattern):
     if not pattern.faces:
         faces, holes = find_faces(pattern.vertices, pattern.edges, pattern.letters)
         return replace(pattern, faces=faces, holes=holes)
+    pattern = _with_border(pattern)
     for f, face in enumerate(pattern.faces):
         if not _loop_area(pattern.vertices, face) > 0:
-            raise ValueError(f"face {f} has no area or runs clockwise; it must be the other way")
+            raise ValueError(f"face {f} has no area, or is turned over in the flat sheet")
         if len(face) > 3:  # a loop that touches itself makes gmsh crash
             _check_touching(pattern.vertices, pattern.face_sides(f))
     return pattern
 
 
+def _with_border(pattern):
+    """The pattern with letter B on mountains and valleys that end the film, and a note.
+
+    Some programs give every edge a fold. Where edges have no face at all, one may be missing, and
+    the letters stay.
+    """
+    shares = np.sum(face_pairs(pattern) >= 0, axis=1)
+    ends = np.flatnonzero((shares == 1) & np.isin(pattern.letters, ("M", "V")))
+    if not len(ends) or np.any(shares == 0):
+        return pattern
+    letters = pattern.letters.copy()
+    letters[ends] = "B"
+    more = f" and {len(ends) - 1} more" if len(ends) > 1 else ""
+    note = f"edge {ends[0]} ({pattern.letters[ends[0]]}){more} cannot fold: the film ends there"
+    return replace(pattern, letters=letters, notes=(*pattern.notes, note))
+
+
 def _check_edges(pattern):
-    """Refuse edges of no length, edges given twice and edges that cross."""
+    """Refuse edges that cross."""
     vertices, edges = pattern.vertices, pattern.edges
-    if not 0 < len(edges) <= MOST_EDGES:
-        raise ValueError(f"the pattern has {len(edges)} edges; must be 1 to {MOST_EDGES}")
     tiny = SAME_PLACE * pattern.size
-    _check_lengths(pattern)
-    _, first, counts = np.unique(
-        np.sort(edges, axis=1), axis=0, return_index=True, return_counts=True
-    )
-    if np.any(counts > 1):
-        e = int(first[np.argmax(counts > 1)])
-        raise ValueError(f"edge {e} is given {counts.max()} times")
     plane = vertices[:, :2]
     for e, rest in _near_pairs(plane, edges):
         rest = rest[~np.isin(edges[rest], edges[e]).any(axis=1)]
@@ -337,7 +364,7 @@ def find_faces(vertices, edges, letters):
 def _check_touching(vertices, edges):
     """Refuse vertices that lie on one another or on an edge: the graph would not be planar."""
     plane = vertices[:, :2]
-    tiny = SAME_PLACE * np.ptp(plane, axis=0).max()
+    tiny = nearness(vertices)
     used = np.unique(edges)
     used = used[np.argsort(plane[used, 0])]
     across = plane[used, 0]
@@ -454,7 +481,7 @@ def face_pairs(pattern):
             if pairs[e, side] >= 0:
                 raise ValueError(
                     f"faces {pairs[e, side]} and {face} lie on the same side of edge {e}: "
-                    "one of them runs clockwise or they overlap"
+                    "they overlap"
                 )
             pairs[e, side] = face
     return pairs
@@ -480,6 +507,7 @@ def _check(pattern):
         raise ValueError(
             f"the sheet is of several pieces: faces {min(reached)} and "
             f"{min(set(range(len(pattern.faces))) - reached)} do not hang together"
+            + "".join(f"; {note}" for note in pattern.notes)
         )
 
 
@@ -529,17 +557,17 @@ def fold_by_angles(pattern):
     bent = fold_angles_of(pattern, places, pairs)
     wrong = hinges * np.abs((bent - pattern.angles + 180) % 360 - 180)
     e = int(np.argmax(wrong))
+    if wrong[e] > LOOSE and pairs[e, 0] == pairs[e, 1]:
+        raise ValueError(
+            f"edge {e} ({pattern.letters[e]}) ends inside face {pairs[e, 0]}, which stays flat: it "
+            f"cannot be bent by {plain(pattern.angles[e])} degrees"
+        )
     if wrong[e] > LOOSE:
         raise ValueError(
-            f"the fold angles do not go together: edge {e} would be bent by {_plain(bent[e])} "
-            f"degrees, not by {_plain(pattern.angles[e])}"
+            f"the fold angles do not go together: edge {e} would be bent by {plain(bent[e])} "
+            f"degrees, not by {plain(pattern.angles[e])}"
         )
     return places
-
-
-def _plain(angle):
-    """An angle [deg] for a message, never -0."""
-    return f"{round(angle, 2) + 0.0:g}"
 
 
 def fold_angles_of(pattern, places, pairs):
@@ -566,11 +594,11 @@ def fold_angles_of(pattern, places, pairs):
 
 
 def _normal(loop, tiny=0.0):
-    """Unit normal (3,) of a polygon (n, 3), as flat as may be (Newell's method).
+    """Unit normal (3,) of a polygon (n, 3), as flat as may be.
 
     It is 0 where the polygon's area is at most half of `tiny` [m2].
     """
-    normal = np.cross(loop, np.roll(loop, -1, axis=0)).sum(axis=0)
+    normal = 2 * area_vector(loop)
     size = np.linalg.norm(normal)
     return normal / size if size > tiny else np.zeros(3)
 
@@ -579,7 +607,6 @@ def _unrolled(pattern):
     """Flat vertices (V, 3) [m] of a pattern whose `vertices` are those of a folded form."""
     if not pattern.faces:
         raise ValueError("a folded form without faces_vertices cannot be unrolled")
-    _check_lengths(pattern)
     flat = [_laid_flat(pattern, face) for face in range(len(pattern.faces))]
     ids = [_vertices_of(pattern, face) for face in range(len(pattern.faces))]
     for face, other, _, a, b, _ in _outwards(pattern):
@@ -588,8 +615,53 @@ def _unrolled(pattern):
         begin, stop = flat[other][there.index(a)], flat[other][there.index(b)]
         turn = (end - start) / (stop - begin)
         flat[other] = start + turn / abs(turn) * (flat[other] - begin)
-    found = [np.column_stack([z.real, z.imag, np.zeros(len(z))]) for z in flat]
-    return _agreed(pattern, found, "the folded form does not unroll into the plane")
+    places = _evened_out(pattern, np.concatenate(ids), flat)
+    on_faces = np.any(face_pairs(pattern) >= 0, axis=1)
+    strain = np.where(on_faces, _strains(pattern, pattern.vertices, places), 0.0)
+    if np.max(np.abs(strain)) > STRETCH:
+        e = int(np.argmax(np.abs(strain)))
+        raise ValueError(
+            "the folded form does not unroll into the plane: edge "
+            f"{e} would be {100 * strain[e]:+.3g} % longer folded"
+        )
+    return places
+
+
+def _evened_out(pattern, ids, flat):
+    """Vertices (V, 3) [m] in the plane on which the faces agree as well as can be.
+
+    Each face is laid as it best fits, each vertex then into the middle of where its faces put it,
+    round by round (shape matching: Mueller et al., ACM Trans. Graph. 24 (2005) 471).
+
+    Parameters
+    ----------
+    pattern : CreasePattern
+    ids : (n,) int
+        Vertices of all faces, one face after the other.
+    flat : list of (m,) complex
+        Where each face puts its own [m].
+    """
+    sizes = [len(z) for z in flat]
+    face = np.repeat(np.arange(len(flat)), sizes)
+    shares = np.maximum(np.bincount(ids, minlength=len(pattern.vertices)), 1)
+
+    def total(rows, z, count):
+        return np.bincount(rows, z.real, count) + 1j * np.bincount(rows, z.imag, count)
+
+    def centres(z):
+        return (total(face, z, len(flat)) / sizes)[face]
+
+    put = np.concatenate(flat)
+    shape = put - centres(put)
+    for _ in range(ROUNDS):
+        middle = total(ids, put, len(shares)) / shares
+        gap, wanted = np.max(np.abs(put - middle[ids])), middle[ids]
+        turn = total(face, (wanted - centres(wanted)) * shape.conj(), len(flat))
+        laid = centres(wanted) + (turn / np.abs(turn))[face] * shape
+        if gap <= SAME_PLACE * pattern.size or np.max(np.abs(laid - put)) <= 1e-4 * gap:
+            break
+        put = laid
+    return np.column_stack([middle.real, middle.imag, np.zeros(len(middle))])
 
 
 def _laid_flat(pattern, face):
@@ -659,9 +731,7 @@ def _fitting(pattern, frame, scale, number):
             "folded form of it"
         )
     folded = scale * frame.coords
-    a, b = pattern.edges.T
-    rest = np.linalg.norm(pattern.vertices[b] - pattern.vertices[a], axis=1)
-    strain = np.linalg.norm(folded[b] - folded[a], axis=1) / rest - 1
+    strain = _strains(pattern, folded, pattern.vertices)
     wrong = (strain > STRETCH) | (strain < -SHORTENED)
     if np.any(wrong):
         e = int(np.argmax(wrong))
@@ -670,6 +740,13 @@ def _fitting(pattern, frame, scale, number):
             f"folded form of the pattern"
         )
     return folded
+
+
+def _strains(pattern, places, rest):
+    """Strains (E,) [-] of the edges with vertices at `places` (V, 3), beside those at `rest`."""
+    a, b = pattern.edges.T
+    now, before = (np.linalg.norm(x[b] - x[a], axis=1) for x in (places, rest))
+    return now / np.where(before > 0, before, np.inf) - 1
 
 
 def nearest_pose(places, target, weights=None):

@@ -4,15 +4,28 @@
 Figures are drawn to files only; no window system is needed.
 """
 
+from pathlib import Path
+
 import numpy as np
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
+
+from .files import replacing
 
 FILM = np.array([0.98, 0.80, 0.42])
 SPOOL = np.array([0.45, 0.48, 0.55])
 LIGHT = np.array([0.35, -0.45, 0.82]) / np.linalg.norm([0.35, -0.45, 0.82])
 VIEW = {"elev": 32, "azim": -65}
 DPI = 150
+
+
+def save(figure, path, **options):
+    """Write a matplotlib Figure whole or not at all; the ending of `path` gives the format.
+
+    `options` are those of `savefig`, of which `dpi` is DPI by default.
+    """
+    with replacing(path) as part:
+        figure.savefig(part, **{"format": Path(path).suffix[1:], "dpi": DPI, **options})
 
 
 def plot_deployment(history, path):
@@ -41,7 +54,7 @@ def plot_deployment(history, path):
     for axes in (rate, phase):
         axes.grid(alpha=0.3)
         axes.margins(x=0)
-    figure.savefig(path, dpi=DPI)
+    save(figure, path)
 
 
 def plot_history(history, columns, path):
@@ -67,7 +80,7 @@ def plot_history(history, columns, path):
         axes.margins(x=0)
     every[-1].set(xlabel="time [s]")
     figure.align_ylabels(every)
-    figure.savefig(path, dpi=DPI)
+    save(figure, path)
 
 
 def plot_shapes(frames, mesh, path, times):
@@ -126,7 +139,7 @@ def _plot_views(frames, times, path, draw):
         axes.set_title(f"{time:.3f} s", y=0.9, fontsize=11)
         if i == 0:
             draw_scale_bar(axes, radius)
-    figure.savefig(path, dpi=DPI)
+    save(figure, path)
 
 
 def draw_sail(axes, mesh, positions, radius):

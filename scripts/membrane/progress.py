@@ -30,7 +30,7 @@ class Progress:
             f"t = {done:.3f} of {self.total:g} s  {done / wall:.3g} simulated s per s  "
             f"{left:.0f} s left{note}"
         )
-        self.show(done / self.total if self.total > 0 else 1.0, text)
+        self.show(min(1.0, done / self.total) if self.total > 0 else 1.0, text)
 
     def show(self, share, text):
         """Tell that `share` (0 to 1) of the work is done."""
@@ -75,6 +75,11 @@ def stages(label, weights, silent=False, stream=None):
     yield begin
     if not silent:
         progress.show(1.0, f"done in {time.monotonic() - progress.start:.1f} s")
+
+
+def warn(text):
+    """Print a sentence about something doubtful to standard error."""
+    print(f"Warning: {text}", file=sys.stderr, flush=True)
 
 
 def announcer(prefix):

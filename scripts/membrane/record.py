@@ -1,17 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a running sail leaves behind: rows of measures, shapes, frames for the pictures."""
 
-import json
+from array import array
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 from yade import wrapper as yade
 
 from . import measures
+from .files import write_json
 from .geometry import side_lengths, side_rows, triangle_areas
 from .hub import inertia
 from .history import read_history
-from .output import HistoryWriter, VtkSeries
+from .output import HistoryWriter, VtkSeries, is_whole_series, is_whole_table
 
 LEDGER_UNITS = {
     "kinetic_energy": "J",
@@ -79,6 +81,8 @@ HUB_UNITS = {
 }
 
 
+TABLE, SHAPES = "history.csv", "shapes"  # in the output folder
+
 THIRDS = np.full(3, 1 / 3)  # of the three sides of a triangle
 
 
@@ -98,10 +102,8 @@ class Recorder:
 
     Attributes
     ----------
-    rows : list of dict
-        What was written to history.csv.
-    frames : list of (N, 3) float
-        Positions [m] at each shape.
+    frames : Frames
+        Positions (N, 3) [m] at each shape.
     frame_times : list of float
         Their times [s].
     """
@@ -112,14 +114,9 @@ class Recorder:
         self.mesh, self.sail, self.spin_rate = mesh, sail, spin_rate
         if sail.hub:
             self.units = {**self.units, **HUB_UNITS}
-        state = state or {
-            "history_size": None,
-            "times": [],
-            "first_lead": None,
-            "phases": [0.0] * 4,
-        }
-        table, shapes = Path(folder) / "history.csv", Path(folder) / "shapes"
-        self._history = HistoryWriter(table, self.units, state["history_size"])
+        state = state or {"history": None, "film": None, "first_lead": None, "phases": [0.0] * 4}
+        table, shapes = Path(folder) / TABLE, Path(folder) / SHAPES
+        self._history = HistoryWriter(table, self.units, state["history"])
         membrane = sail.membrane
         self._sides = np.array(membrane.sides)
         self._rest = np.array(membrane.restLengths)
@@ -133,19 +130,21 @@ class Recorder:
         pairs = np.stack([mesh.triangles, ahead], axis=-1).reshape(-1, 2)
         self._triangle_sides = side_rows(self._sides, pairs).reshape(-1, 3)
         self._rest_areas = triangle_areas(mesh.nodes, mesh.triangles)
-        self.frame_times = list(state["times"])
+        self.frame_times = list(state["film"]["times"]) if state["film"] else []
         self._film = VtkSeries(shapes, "film", mesh.triangles, self.frame_times)
         self._lines = VtkSeries(shapes, "sides", self._sides, self.frame_times)
-        (shapes / "fields.json").write_text(json.dumps(SHAPE_FIELDS, indent=2) + "\n")
-        self.rows, self.frames = _rows(table), self._film.positions()
+        write_json(shapes / "fields.json", SHAPE_FIELDS)
+        self._columns = {name: array("d", values) for name, values in read_history(table).items()}
+        self.frames = Frames(self._film)
         # Of the tips against the spool [rad]: at the first row, where its time is 0, and since.
         self._first_lead, self._phases = state["first_lead"], np.array(state["phases"])
 
     def state(self):
-        """What a Recorder needs to continue this one, ready for JSON."""
+        """What a Recorder needs to continue this one, ready for JSON; it is on the disk then."""
         return {
-            "history_size": self._history.size(),
-            "times": self.frame_times,
+            "history": self._history.state(),
+            "film": self._film.state(),
+            "sides": self._lines.state(),
             "first_lead": self._first_lead,
             "phases": self._phases.tolist(),
         }
@@ -155,7 +154,8 @@ class Recorder:
         x = self.sail.last_positions()
         row = {"time": time, **self.measured(time, x), **self._booked(x)}
         self._history.write(row)
-        self.rows.append(row)
+        for name, column in self._columns.items():
+            column.append(row[name])
         return row
 
     def measured(self, time, x):
@@ -226,7 +226,6 @@ class Recorder:
         lines = {**fields, "fold": self._signs, "kind": self._kinds}
         self._film.write(time, x, _single_precision(self._of_triangles(x, fields)))
         self._lines.write(time, x, _single_precision(lines))
-        self.frames.append(x)
         self.frame_times.append(time)
 
     def _of_triangles(self, x, fields):
@@ -241,18 +240,33 @@ class Recorder:
         }
 
     def columns(self):
-        """The rows as arrays (S,) by name."""
-        return {name: np.array([row[name] for row in self.rows]) for name in self.units}
+        """What was written to history.csv: arrays (S,) by name."""
+        return {name: np.array(values) for name, values in self._columns.items()}
 
     def close(self):
         """Close history.csv."""
         self._history.close()
 
 
-def _rows(table):
-    """Rows of a history.csv so far, each a dict."""
-    columns = read_history(table)
-    return [dict(zip(columns, row)) for row in zip(*columns.values())]
+def is_whole(folder, state):
+    """Whether a folder still holds what the `state` of a Recorder tells of."""
+    folder = Path(folder)
+    return is_whole_table(folder / TABLE, state["history"]) and all(
+        is_whole_series(folder / SHAPES, name, state[name]) for name in ("film", "sides")
+    )
+
+
+class Frames(Sequence):
+    """Shapes (N, 3) [m] of a series, each read back when it is asked for: all would fill memory."""
+
+    def __init__(self, series):
+        self._series = series
+
+    def __len__(self):
+        return len(self._series.frames)
+
+    def __getitem__(self, number):
+        return self._series.positions(number)
 
 
 def _single_precision(fields):

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from . import own
 from .files import BadFile, replace_text
 from .finished_run import read_run
 from .geometry import crease_angles
@@ -113,10 +114,11 @@ def write_report(folder):
     folder = Path(folder)
     if not TEMPLATE.is_file():
         raise NoViewer("its viewer is not built; `scripts/run.sh viewer` does it, with npm")
-    before, after = TEMPLATE.read_text().split(PLACE)
+    before, after = TEMPLATE.read_text(encoding="utf-8").split(PLACE)
     # "<" could end the page's script.
     content = json.dumps(run_data(folder), allow_nan=False).replace("<", "\\u003c")
     page = folder / PAGE
+    own.add_to_list(folder, own.RUN, [PAGE])
     replace_text(page, before + content + after)
     return page
 

@@ -5,6 +5,7 @@ import os
 import platform
 import sys
 import time
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 
@@ -14,12 +15,15 @@ from yade import wrapper as yade_classes
 
 from . import __version__, measures, plots, report, scene
 from .case_folder import LAST_GOOD
+from .checkpoint import save_scene
+from .commands import Terminated
 from .files import write_json
 from .fold import fold, fold_report
 from .mesh import mesh_of, tip_masses
 from .output import NotFinite
+from .parameters import check_steps
 from .progress import Progress
-from .record import Recorder
+from .record import Recorder, is_whole
 from .spool import add_spool
 
 # The spin-up may take longer steps than the run: no accuracy is asked of it.
@@ -201,9 +205,11 @@ def march(p, recorder, note, look=look_away, begun=None, keep=None):
     keep : callable, optional
         Called after each row but the last with its number, which a later `begun` takes.
     """
-    stride = max(1, round(p.history_interval / p.dt))
+    check_steps(p.duration, p.dt)
+    stride = max(1, round(min(p.history_interval, p.duration) / p.dt))
     rows = max(1, round(p.duration / (stride * p.dt)))
-    between = round(p.shapes_interval / (stride * p.dt)) if p.shapes_interval > 0 else 0
+    shapes = min(p.shapes_interval, p.duration)
+    between = max(1, round(shapes / (stride * p.dt))) if shapes > 0 else 0
     progress = Progress("deploying", p.duration)
     if begun is None:
         scene.advance(1)  # a step's measures belong to the time at which it began
@@ -213,7 +219,7 @@ def march(p, recorder, note, look=look_away, begun=None, keep=None):
         scene.advance(stride, recorder.sail.forces if row - 1 == begun else None)
         now = row * stride * p.dt
         measured = recorder.history(now)
-        if row == rows or (between and row % max(1, between) == 0):
+        if row == rows or (between and row % between == 0):
             recorder.shape(now)
         progress.update(now, "  " + note(measured))
         look(recorder.sail)
@@ -268,7 +274,7 @@ def deploy(p, folder, pictures=True, checkpoints=None, page=True, look=look_away
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     watch = Stopwatch()
-    saved = checkpoints.load() if checkpoints else None
+    saved = checkpoints.load(lambda state: _is_whole(folder, state)) if checkpoints else None
     if saved:
         mesh, sail, facts = mesh_of(p), scene.loaded(), saved["facts"]
         watch = Stopwatch(saved["wall_time"])
@@ -298,20 +304,19 @@ def deploy(p, folder, pictures=True, checkpoints=None, page=True, look=look_away
         facts["release_step"] = yade_classes.Omega().iter
     recorder = Recorder(folder, mesh, sail, p.omega, begun and begun["recorder"])
     try:
-        march(
-            p,
-            recorder,
-            lambda row: f"rate {row['deployment_rate']:.3f}",
-            look,
-            begun and begun["row"],
-            lambda row: keep(RUN, {"row": row, "recorder": recorder.state()}),
-        )
-    except (RuntimeError, NotFinite) as error:
-        time_reached = (yade_classes.Omega().iter - facts["release_step"]) * p.dt
-        saying = save_last_good(sail, folder)
-        if pictures and recorder.rows:
+        with last_good_saved(sail, folder, facts["release_step"], stopped=not checkpoints):
+            march(
+                p,
+                recorder,
+                lambda row: f"rate {row['deployment_rate']:.3f}",
+                look,
+                begun and begun["row"],
+                lambda row: keep(RUN, {"row": row, "recorder": recorder.state()}),
+            )
+    except Diverged:
+        if pictures and recorder.frames:
             draw(mesh, recorder, recorder.columns(), folder)
-        raise Diverged(RUN, time_reached, str(error), saying) from error
+        raise
     finally:
         recorder.close()
         watch.lap(RUN)
@@ -350,6 +355,11 @@ def deploy(p, folder, pictures=True, checkpoints=None, page=True, look=look_away
     return {**summary, "wall_time": wall}
 
 
+def _is_whole(folder, saved):
+    """Whether what a checkpoint of `deploy` tells of is still in the folder."""
+    return saved["stage"] == SPIN_UP or is_whole(folder, saved["progress"]["recorder"])
+
+
 def begin(p):
     """Build the sail of `p` and check its time step.
 
@@ -386,6 +396,36 @@ def write_page(folder):
         print(f"no {report.PAGE}: {error}", file=sys.stderr)
 
 
+@contextmanager
+def last_good_saved(sail, folder, release_step, stopped=True):
+    """Where the run in the block goes wrong or is stopped, save its last good state and say so.
+
+    Parameters
+    ----------
+    sail : MembraneScene
+    folder : path
+    release_step : int
+        Of YADE, at which time after the release is 0.
+    stopped : bool
+        Also after Ctrl-C and other signals, not only where it goes wrong.
+
+    Raises
+    ------
+    Diverged
+        If it went wrong.
+    """
+    scene_now = yade_classes.Omega()
+    try:
+        yield
+    except (RuntimeError, NotFinite) as error:
+        time = (scene_now.iter - release_step) * scene_now.dt
+        raise Diverged(RUN, time, str(error), save_last_good(sail, folder)) from error
+    except (KeyboardInterrupt, Terminated) as error:
+        if not stopped:
+            raise
+        raise type(error)(save_last_good(sail, folder)) from None
+
+
 def save_last_good(sail, folder):
     """Put a MembraneScene back to its last good state, saved in `folder`; returns a sentence."""
     try:
@@ -397,7 +437,7 @@ def save_last_good(sail, folder):
     tags = yade_classes.Omega().tags
     for name in tags.keys():
         tags[name] = ""  # else two files of one state would differ by day and machine
-    yade_classes.Omega().save(str(path), quiet=True)
+    save_scene(path)
     return f"The last good state, of t = {time:.6g} s on YADE's clock, is in {path}"
 
 
@@ -415,7 +455,7 @@ def draw(mesh, recorder, history, folder):
     """
     plots.plot_deployment(history, folder / "deployment.png")
     times = np.array(recorder.frame_times)
-    rates = [measures.deployment_rate(mesh, x) for x in recorder.frames]
+    rates = np.interp(times, history["time"], history["deployment_rate"])  # of its rows
     picks = instants(times, int(np.argmax(rates)))
     frames = [recorder.frames[i] for i in picks]
     plots.plot_shapes(frames, mesh, folder / "shapes.png", times[picks])

@@ -7,7 +7,7 @@ import numpy as np
 from yade import wrapper as yade
 
 from . import _load, contacts, hub, spool
-from .progress import stages
+from .progress import stages, warn
 
 LARGE = 100_000  # nodes: adding so many takes about a second, so that progress is shown
 ADDING = {"rest state": 2, "bodies": 2, "interactions": 6}  # stages and their shares of the time
@@ -278,7 +278,9 @@ def set_engines(
         # Also where the sides are no interactions: should they become some, YADE would end for want of
         # it, before the forces engine can refuse them.
         laws = [_plugin["Law2_MembraneGeom_MembranePhys_Buckling"]()]
-    others = sorted({body.id for body in scene.bodies}.difference(membrane.bodyIds))
+    others = []
+    if len(scene.bodies) > len(membrane.bodyIds):
+        others = sorted({body.id for body in scene.bodies}.difference(membrane.bodyIds))
     if fused:
         membrane.removeInteractions()
     else:
@@ -289,6 +291,12 @@ def set_engines(
                 body.mask = 1
         geometry = [_plugin["Ig2_MembraneNode_MembraneNode_MembraneGeom"]()]
         physics = [_plugin["Ip2_MembraneMat_MembraneMat_MembranePhys"](membrane=membrane)]
+    if not set(touching).issubset(membrane.bodyIds):
+        stranger = min(set(touching).difference(membrane.bodyIds))
+        raise ValueError(f"set_engines: touching: body #{stranger} is no node of the membrane")
+    untouched = [i for i in others if i not in driven and scene.bodies[i].bounded]
+    if untouched and not touching:
+        warn(f"nothing of the membrane touches body #{untouched[0]}: name nodes in `touching`")
     if touching:
         contacts.check(others, INTEGRATED)
         for body in (scene.bodies[i] for i in touching):
@@ -393,13 +401,15 @@ def loaded():
 
 
 def sort_interactions():
-    """Let YADE's loop go through interactions in the order of their ids, at some cost in time.
+    """Let YADE take interactions one by one in the order of their ids, which costs time.
 
-    Then a saved scene goes on bit for bit also while tethers touch the spool.
+    Then a saved scene goes on bit for bit also while tethers touch the spool, and sides that are
+    interactions add up alike in every run: several threads would share them out by chance.
     """
     for engine in yade.Omega().engines:
         if isinstance(engine, yade.InteractionLoop):
             engine.loopOnSortedInteractions = True
+            engine.ompThreads = 1
 
 
 def advance(steps, resumed=None):

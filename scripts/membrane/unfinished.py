@@ -1,38 +1,41 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Output folders that keep an earlier run's results until a new run has all of its own."""
 
-import fcntl
 import os
 import shutil
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from . import own
 from .case_folder import PART
+from .files import flush, settle
 
 UNFINISHED = "unfinished"  # folder within the output folder
-LOCK = "lock"
 GOING, GONE = "earlier.part", "earlier"  # where earlier results are while they are exchanged
 
-# What the commands leave in an output folder; anything else there is not ours.
-RESULTS = (
-    "summary.json",
-    "wall_time.json",
-    "history.csv",
-    "history.units.json",
-    "shapes",
-    "sail.fold",
-    "shapes.png",
-    "deployment.png",
-    "history.png",
-    "ikaros.png",
-    "report.html",
-    "sail.mp4",
-    "sail.gif",
-)
+# What the commands leave in an output folder: refused at once where it is another's.
+RESULTS = {
+    own.RUN: (
+        "summary.json",
+        "wall_time.json",
+        "history.csv",
+        "history.units.json",
+        "shapes",
+        "sail.fold",
+        "shapes.png",
+        "deployment.png",
+        "history.png",
+        "ikaros.png",
+        "report.html",
+        "sail.mp4",
+        "sail.gif",
+    ),
+    own.CALIBRATION: ("calibration.json", "calibration.png", "runs.csv"),
+}
 
 
 @contextmanager
-def new_results(folder):
+def new_results(folder, kind=own.RUN):
     """Give a folder to write results into, which take the place of earlier ones at the end.
 
     Where the block ends by an error, `folder` holds what it held before and, in
@@ -41,34 +44,34 @@ def new_results(folder):
     Parameters
     ----------
     folder : path
-        Made if missing. Files in it that no run makes are left alone.
+        Made if missing. What is in it and not listed as ours is left alone.
+    kind : str
+        Of the results: own.RUN or own.CALIBRATION.
 
     Raises
     ------
     ValueError
-        If another process writes results there.
+        If another process writes results there, or something of another's would be lost.
     """
     folder = Path(folder)
     part = folder / UNFINISHED
     missing = [path for path in (folder, *folder.parents) if not path.exists()]
-    part.mkdir(parents=True, exist_ok=True)
-    is_empty = False
+    busy = f"{part}: another run is writing its results there"
     try:
-        with _locked(part / LOCK):
-            _settle(folder, part)
-            for path in _content(part):
-                _remove(path)
+        with own.held(part, busy):
             try:
+                _settle(folder, part)
+                own.refuse_others(folder, kind, RESULTS[kind])
+                own.empty(part)
                 yield part
-                _swap(folder, part)
+                _swap(folder, part, kind)
             finally:
-                is_empty = not _content(part)
+                if not own.content(part):
+                    own.remove(part)
     finally:
-        if is_empty:
-            shutil.rmtree(part)
-            for path in missing:
-                with suppress(OSError):  # which it is where there are results now
-                    path.rmdir()
+        for path in missing:
+            with suppress(OSError):  # which it is where there are results now
+                path.rmdir()
 
 
 def name_of(folder):
@@ -77,28 +80,17 @@ def name_of(folder):
     return path.parent.name if path.name == UNFINISHED else path.name.removesuffix(PART)
 
 
-@contextmanager
-def _locked(path):
-    """Hold a file's lock; ValueError if another process does."""
-    with open(path, "w") as lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise ValueError(f"{path.parent}: another run is writing its results there") from None
-        yield
-
-
-def _content(part):
-    """What a run has written so far."""
-    return [path for path in part.iterdir() if path.name != LOCK]
-
-
-def _swap(folder, part):
+def _swap(folder, part, kind):
     """Put all that is in `part` in the place of earlier results, and delete those."""
-    made = _content(part)
+    made = [path.name for path in own.content(part)]
+    own.refuse_others(folder, kind, made)
+    earlier = own.listed(folder, kind)
+    own.write_list(part, kind, made)  # which goes the way of the results
+    if earlier:  # they are removed for what must be on the disk
+        settle(part)
     try:
         (part / GOING).mkdir()
-        for name in {*RESULTS, *(path.name for path in made)}:
+        for name in {*earlier, own.LIST}:
             if os.path.lexists(folder / name):
                 os.rename(folder / name, part / GOING / name)
         os.rename(part / GOING, part / GONE)
@@ -113,18 +105,18 @@ def _settle(folder, part):
     """
     if (part / GOING).exists():
         for path in (part / GOING).iterdir():
-            os.rename(path, folder / path.name)
+            _move(path, folder)
         (part / GOING).rmdir()
     if (part / GONE).exists():
-        for path in _content(part):
+        for path in own.content(part):
             if path.name != GONE:
-                os.rename(path, folder / path.name)
+                _move(path, folder)
+        flush(folder)
         shutil.rmtree(part / GONE)
 
 
-def _remove(path):
-    """Delete a file or a folder."""
-    if path.is_dir() and not path.is_symlink():
-        shutil.rmtree(path)
-    else:
-        path.unlink()
+def _move(path, folder):
+    """Move results into a folder, where nothing must be in their way."""
+    if os.path.lexists(folder / path.name):
+        raise ValueError(f"{folder / path.name} is in the way of {path}: move it away")
+    os.rename(path, folder / path.name)

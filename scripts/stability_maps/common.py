@@ -8,7 +8,7 @@ from pathlib import Path
 import membrane as plugin
 import numpy as np
 from matplotlib.figure import Figure
-from membrane import scene
+from membrane import plots, scene
 from membrane.files import replace_text
 from yade import wrapper as yade
 
@@ -227,4 +227,4 @@ def figure(columns=1, rows=1, width=5.0, height=3.8):
 
 def save(drawing, path):
     """Write a picture, without the date in it."""
-    drawing.savefig(path, dpi=72, metadata={"Software": None})
+    plots.save(drawing, path, dpi=72, metadata={"Software": None})

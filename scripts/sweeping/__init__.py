@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Sweeps over the paper's parameters: grid, batch, report. Only the cases themselves need YADE.
 
-Those modules of `membrane` that need no YADE (parameters, measures, files, history, unfinished,
-commands, case_folder, progress) are used as they are; the package's own code, which loads the
-plugin, is left out.
+Those modules of `membrane` that need no YADE (parameters, measures, files, history, own,
+unfinished, plots, commands, case_folder, progress) are used as they are; the package's own code,
+which loads the plugin, is left out.
 """
 
 import importlib.util

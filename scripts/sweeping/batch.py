@@ -1,35 +1,77 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Runs the cases of a sweep by yade-batch, shows how far they are, and tells what stopped them."""
 
-import fcntl
 import os
+import select
 import signal
 import subprocess
 import time
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from membrane import own
 from membrane.case_folder import DAMAGED, FAILED, KILLED, MISSING, RUNNING, advice, look, part_of
+from membrane.files import replace_text
 from membrane.progress import Progress
 
 from .grid import CASES, table
 
 BATCH = "batch"  # folder of the table and of what yade-batch and the jobs say
+FAMILY = "MEMBRANE_SWEEP"  # variable that tells processes of which folder's sweep they are
 ROUNDS = 3  # how often in one sweep a case is started that was stopped from outside
 SCRIPT = Path(__file__).resolve().parents[1] / "case.py"
 LOOK = 0.5  # [s], between two looks at the cases
 
 
 @contextmanager
-def alone(folder):
-    """Hold the sweep's lock; RuntimeError if another process sweeps in this folder."""
-    (folder / BATCH).mkdir(parents=True, exist_ok=True)
-    with open(folder / BATCH / "lock", "w") as lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise RuntimeError(f"another sweep is running in {folder}") from None
+def alone(folder, tell):
+    """Hold the sweep's lock; ValueError if another process sweeps in this folder.
+
+    Ends what an earlier sweep has left behind that was killed: yade-batch outlives it.
+    """
+    busy = f"another sweep is running in {folder}"
+    with own.held(folder / BATCH, busy, links={SCRIPT.name}):
+        ended = end(folder)
+        if ended:
+            tell(f"ended {', '.join(map(str, ended))}, processes that a killed sweep had left here")
         yield
+
+
+def end(folder):
+    """Kill all processes that sweeps in a folder have started; returns their ids.
+
+    Jobs go on from their checkpoints.
+    """
+    ended = []
+    while found := _processes(os.fsencode(_family(folder))):  # again: they may start others
+        for number, handle in found.items():
+            with suppress(ProcessLookupError):
+                signal.pidfd_send_signal(handle, signal.SIGKILL)
+            has_ended = select.poll()
+            has_ended.register(handle, select.POLLIN)
+            has_ended.poll()
+            os.close(handle)
+            ended.append(number)
+    return ended
+
+
+def _family(folder):
+    """What all processes that a sweep in a folder starts have in their environment."""
+    return f"{FAMILY}={folder.resolve()}"
+
+
+def _processes(mark):
+    """Handles, by id, of the processes that have a setting `mark` in their environment."""
+    found = {}
+    for number in (int(path.name) for path in Path("/proc").iterdir() if path.name.isdecimal()):
+        with suppress(OSError):  # it may be another user's, or have ended
+            handle = os.pidfd_open(number)  # which never becomes another process's
+            try:
+                if mark in Path(f"/proc/{number}/environ").read_bytes().split(b"\0"):
+                    found[number] = os.dup(handle)
+            finally:
+                os.close(handle)
+    return found
 
 
 def run(folder, cases, jobs, checkpoint_every, pictures, tell):
@@ -53,7 +95,11 @@ def run(folder, cases, jobs, checkpoint_every, pictures, tell):
         Takes a line of text for the user.
     """
     here = folder / CASES
-    before = {name: look(here / name) for name in cases}
+
+    def states(names):
+        return {name: look(here / name, cases[name].as_dict()) for name in names}
+
+    before = states(cases)
     for name, status in before.items():
         if status.state == DAMAGED:
             tell(f"{status.reason}; {advice(status.folder)}")
@@ -68,7 +114,7 @@ def run(folder, cases, jobs, checkpoint_every, pictures, tell):
         if not left:
             break
         _batch(folder, cases, left, jobs, checkpoint_every, pictures)
-        now = {name: look(here / name) for name in left}
+        now = states(left)
         for name, status in now.items():
             if status.state == FAILED:
                 tell(f"{name} failed: {status.reason}")
@@ -87,7 +133,7 @@ def _batch(folder, cases, left, jobs, checkpoint_every, pictures):
     script = batch / SCRIPT.name  # yade-batch allows no blanks in paths
     script.unlink(missing_ok=True)
     script.symlink_to(SCRIPT)
-    own = {
+    columns = {
         name: {
             "out": f"../{CASES}/{name}",
             "checkpoint_every": checkpoint_every,
@@ -95,13 +141,14 @@ def _batch(folder, cases, left, jobs, checkpoint_every, pictures):
         }
         for name in left
     }
-    (batch / "table.txt").write_text(table(left, own))
+    replace_text(batch / "table.txt", table(left, columns))
     command = ["yade-batch", f"--jobs={jobs}", "--job-threads=1", "--plot-update=-1"]
     command += ["--disable-pynotify", "--log=@.log", "table.txt", SCRIPT.name]
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "Agg"}
+    environment |= [_family(folder).split("=", 1)]
     environment.pop("OMP_NUM_THREADS", None)
     progress = _CaseProgress(folder, cases)
-    with open(batch / "batch.log", "a") as log:
+    with open(batch / "batch.log", "ab") as log:
         batch_process = subprocess.Popen(
             command,
             cwd=batch,
@@ -109,7 +156,7 @@ def _batch(folder, cases, left, jobs, checkpoint_every, pictures):
             stdin=subprocess.DEVNULL,
             stdout=log,
             stderr=subprocess.STDOUT,
-            start_new_session=True,  # so that it can be ended with all its jobs
+            start_new_session=True,  # Ctrl-C is for us
         )
         try:
             while batch_process.poll() is None:
@@ -117,7 +164,7 @@ def _batch(folder, cases, left, jobs, checkpoint_every, pictures):
                 time.sleep(LOOK)
         finally:
             if batch_process.poll() is None:
-                os.killpg(batch_process.pid, signal.SIGKILL)  # jobs go on from their checkpoints
+                end(folder)
                 batch_process.wait()
     progress.close()
 
@@ -172,7 +219,11 @@ def _share(folder, duration):
 def _last_words(folder, name):
     """What a job said last that was stopped, for the user; "" if nothing."""
     try:
-        lines = (folder / BATCH / f"{name}.log").read_text(errors="replace").splitlines()
+        lines = (
+            (folder / BATCH / f"{name}.log")
+            .read_text(encoding="utf-8", errors="replace")
+            .splitlines()
+        )
     except FileNotFoundError:
         return ""
     if any("JOB SUMMARY" in line for line in lines):

@@ -3,17 +3,21 @@
 
 import json
 import os
+from contextlib import suppress
 from dataclasses import fields
 from itertools import product
 from pathlib import Path
 
 import yaml
-from membrane.files import BadFile, read_text, shown
+from membrane.files import BadFile, GivenTwice, one_of_each, read_text, shown
 from membrane.parameters import (
+    PARSERS,
     TABLE_2_CASES,
     TABLE_2_DURATION,
     SailParameters,
+    check_name,
     read_values,
+    whole,
 )
 
 from .grid import case_name, refuse_other_results
@@ -21,7 +25,7 @@ from .grid import case_name, refuse_other_results
 KINDS = {item.name: item.type for item in fields(SailParameters)}
 WORDS = {
     bool: "true or false",
-    int: "a whole number, in digits alone",
+    int: "a whole number",
     float: "a number",
     str: "a word",
 }
@@ -39,6 +43,8 @@ def read_config(path):
     text = read_text(path)
     try:
         found = _parsed(text)
+    except GivenTwice as error:
+        raise BadFile(path, str(error), "is given twice") from None
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         place = f"line {mark.line + 1}, column {mark.column + 1}" if mark else ""
@@ -56,9 +62,22 @@ def read_config(path):
 def _parsed(text):
     """What a text of JSON or else of YAML says."""
     try:
-        return json.loads(text)
+        return json.loads(text, object_pairs_hook=one_of_each)
+    except GivenTwice:
+        raise
     except ValueError:
-        return yaml.safe_load(text)
+        return yaml.load(text, _Loader)
+
+
+class _Loader(yaml.SafeLoader):
+    """YAML in which one object must not name a key twice."""
+
+    def compose_mapping_node(self, anchor):
+        node = super().compose_mapping_node(anchor)
+        keys = (key for key, _ in node.value if isinstance(key, yaml.ScalarNode))
+        words = (key for key in keys if key.tag != "tag:yaml.org,2002:merge")  # <<
+        one_of_each((self.construct_object(word), None) for word in words)
+        return node
 
 
 def check_file(path):
@@ -97,18 +116,27 @@ def check(config):
     return {case_name(case): case for case in cases}
 
 
+def check_words(words):
+    """Raise ValueError if words of the form NAME=VALUE, with values in YAML, give a name twice."""
+    try:
+        one_of_each(word.partition("=")[::2] for word in words)
+        for word in words:
+            with suppress(yaml.YAMLError):  # then it is a text
+                _parsed(word.partition("=")[2])
+    except GivenTwice as error:
+        raise ValueError(f"--config: {error} is given twice") from None
+
+
 def check_part(config):
     """Raise ValueError, in one sentence, if a configuration or a part of one cannot be used."""
     for name in config:
         if name not in NAMES:
             raise ValueError(f"{_word(name)} is nothing to configure; known are {', '.join(NAMES)}")
-    for name in NUMBERS:
-        value = config.get(name, 1)
-        if isinstance(value, bool) or not isinstance(value, int) or value < 1:
-            raise ValueError(f"{name} = {shown(value)} must be a whole number >= 1")
+    numbers(config)
     out = config.get("out", "out")
     if not isinstance(out, str) or not out.strip() or set(out) & set("{}\0"):
         raise ValueError(f"out = {shown(out)} must be the name of a folder, without {{ and }}")
+    check_name(out)
     if config.get("options") is not None:
         _check_options(config["options"])
     if config.get("grid") is not None:
@@ -117,7 +145,30 @@ def check_part(config):
 
 def common(config):
     """Options that all cases of a configuration share."""
-    return {"duration": TABLE_2_DURATION, **(config.get("options") or {})}
+    found = {"duration": TABLE_2_DURATION, **(config.get("options") or {})}
+    if "parameters" in found:
+        found["parameters"] = os.path.expanduser(found["parameters"])
+    return found
+
+
+def numbers(config):
+    """What a cluster gives each case: NUMBERS by name, int, those of them that are configured."""
+    found = {}
+    for name in (name for name in NUMBERS if name in config):
+        value = config[name]
+        try:
+            found[name] = 0 if isinstance(value, bool) else whole(str(value))
+        except ValueError:
+            found[name] = 0
+        if found[name] < 1:
+            raise ValueError(f"{name} = {shown(value)} must be a whole number >= 1")
+    return found
+
+
+def folder(config):
+    """Name of the folder of the results, which no command takes for an option."""
+    name = os.path.expanduser(config["out"])
+    return os.path.abspath(name) if name.startswith("-") else name
 
 
 def check_places(config):
@@ -125,14 +176,13 @@ def check_places(config):
 
     They are relative to the present folder.
     """
-    out = Path(config["out"])
+    out = Path(folder(config))
     refuse_other_results(out)
     there = next(path for path in (out, *out.parents) if path.exists())
     if not (there.is_dir() and os.access(there, os.W_OK)):
         raise ValueError(f"out = {shown(config['out'])}: {there} is no folder to write to")
-    options = config.get("options") or {}
-    if "parameters" in options:
-        read_values(options["parameters"])
+    if "parameters" in common(config):
+        read_values(common(config)["parameters"])
 
 
 def _check_options(options):
@@ -178,7 +228,7 @@ def _typed(place, name, value):
         if is_switch != (kind is bool) or not isinstance(value, (int, float, str)):
             raise ValueError
         # YAML takes 1e3 for a text, and the command line gets texts.
-        found = value if is_switch else kind(str(value))
+        found = value if is_switch else PARSERS[kind](str(value))
     except ValueError:
         raise ValueError(f"{place}: {name} = {shown(value)} must be {WORDS[kind]}") from None
     try:

@@ -5,13 +5,19 @@ from contextlib import suppress
 from dataclasses import fields, replace
 from pathlib import PurePath
 
+from membrane import own
 from membrane.case_folder import PART, RESULT, Damaged, check_parameters, finished
+from membrane.case_folder import refuse_another
 from membrane.files import BadFile, read_object, shown, write_json
-from membrane.parameters import TABLE_2_CASES, SailParameters
+from membrane.parameters import TABLE_2_CASES, SailParameters, check_name
 
 AXES = tuple(TABLE_2_CASES)  # alpha_crease, beta
 PLAN = "sweep.json"  # what a sweep consists of
 CASES = "cases"  # folder of the cases
+TABLE, PAGE = "cases.csv", "report.html"
+CURVES = ("deployment_rate.png", "phase_difference.png")
+SWING = "swing.png"
+RESULTS = (PLAN, TABLE, PAGE, *CURVES, SWING)  # what a sweep leaves beside folders
 OF_ONE_RUN = ("summary.json", "unfinished")  # what single runs leave in their folders
 
 
@@ -54,25 +60,30 @@ def grid(base, alpha_crease, beta):
 def plan(folder, cases):
     """Note in `folder` which cases (dict of SailParameters by name) the sweep consists of.
 
+    From then on all RESULTS in it are ours.
+
     Raises
     ------
     ValueError
-        If one is there already with other parameters.
+        If one is there already with other parameters, finished or not.
     """
     (folder / CASES).mkdir(parents=True, exist_ok=True)
     for name, p in cases.items():
         with suppress(Damaged):  # is told when its turn comes
             finished(folder / CASES / name, p.as_dict())
+        refuse_another(folder / CASES / name, p.as_dict())
+    own.write_list(folder, own.SWEEP, RESULTS)
     write_json(folder / PLAN, {"cases": {name: p.as_dict() for name, p in cases.items()}})
 
 
 def refuse_other_results(folder):
-    """Raise ValueError if a folder holds the results of a single run, whose page would be lost."""
+    """Raise ValueError if a folder holds what a sweep's report would write over and is not ours."""
     found = next((folder / name for name in OF_ONE_RUN if (folder / name).exists()), None)
     if found and not (folder / PLAN).exists():
         raise ValueError(
             f"{found} is a single run's, whose results would be lost: choose another folder"
         )
+    own.refuse_others(folder, own.SWEEP, RESULTS)
 
 
 def planned_cases(folder):
@@ -108,7 +119,10 @@ def case_folders(folder):
     for level in ("*", "*/*"):
         parts = (path for path in folder.glob(level + PART) if path.is_dir())
         found |= {path.with_name(path.name.removesuffix(PART)) for path in parts}
-    return {**planned, **{path: {} for path in sorted(found - set(planned))}}
+    cases = {**planned, **{path: {} for path in sorted(found - set(planned))}}
+    for path in cases:
+        check_name(path)
+    return cases
 
 
 def table(cases, own):

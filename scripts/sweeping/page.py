@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The page of a sweep's report: one HTML file that shows pictures and tables."""
 
+import os
+from urllib.parse import quote
+
 from jinja2 import Environment, StrictUndefined
 
 TEMPLATE = """\
@@ -9,6 +12,8 @@ TEMPLATE = """\
 <head>
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width">
+<meta http-equiv="Content-Security-Policy"
+      content="default-src 'none'; style-src 'unsafe-inline'; img-src 'self' file:">
 <title>Sweep over {{ axes | join(" and ") }}</title>
 <style>
 body { font: 15px/1.45 sans-serif; color: #222; max-width: 68rem;
@@ -35,10 +40,10 @@ tr.damaged td, tr.failed td, tr.killed td, tr.running td, tr.missing td {
 <h1>Sweep over {{ axes | join(" and ") }}</h1>
 <p>{{ cases | length }} cases:
 {%- for state, count in states.items() %} {{ count }} {{ state }}{{ "." if loop.last else "," }}
-{%- endfor %} All numbers are in <a href="{{ table }}">{{ table }}</a>.</p>
+{%- endfor %} All numbers are in <a href="{{ table | place }}">{{ table }}</a>.</p>
 
 {% for name, caption in pictures.items() %}
-<figure><a href="{{ name }}"><img src="{{ name }}" alt="{{ caption }}"></a>
+<figure><a href="{{ name | place }}"><img src="{{ name | place }}" alt="{{ caption }}"></a>
 <figcaption>{{ caption }}</figcaption></figure>
 {% endfor %}
 
@@ -68,7 +73,7 @@ are missing; the sweep's command runs them, and them alone.
 {%- if unit != "-" %} <small>[{{ unit }}]</small>{% endif %}</th>{% endfor %}</tr>
 {% for case in cases %}
 <tr class="{{ case.state | replace("not begun", "missing") }}">
-<td>{% if case.place %}<a href="{{ case.page or case.place ~ "/" }}">{{ case.name }}</a>
+<td>{% if case.place %}<a href="{{ (case.page or case.place ~ "/") | place }}">{{ case.name }}</a>
 {%- else %}{{ case.name }}{% endif %}</td>
 <td>{{ case.state }}</td>
 {%- for value in case["values"] %}<td class="number">{{ value or "–" }}</td>{% endfor %}</tr>
@@ -84,10 +89,10 @@ are missing; the sweep's command runs them, and them alone.
 <h2>Shapes</h2>
 <div class="shapes">
 {% for case in cases if case.shapes %}
-<figure><a href="{{ case.shapes }}">
-<img src="{{ case.shapes }}" loading="lazy" alt="Shapes of {{ case.name }}"></a>
+<figure><a href="{{ case.shapes | place }}">
+<img src="{{ case.shapes | place }}" loading="lazy" alt="Shapes of {{ case.name }}"></a>
 <figcaption>{{ case.name }}
-{%- if case.page %}: <a href="{{ case.page }}">in 3D</a>{% endif %}</figcaption></figure>
+{%- if case.page %}: <a href="{{ case.page | place }}">in 3D</a>{% endif %}</figcaption></figure>
 {% endfor %}
 </div>
 {% endif %}
@@ -111,9 +116,15 @@ are missing; the sweep's command runs them, and them alone.
 """
 
 
+def place(path):
+    """A path relative to the page as a link has it: no name can be taken for more than a name."""
+    return quote(os.fsencode(path))
+
+
 def render(**content):
     """The page's HTML; all texts are escaped."""
     environment = Environment(
         autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined
     )
+    environment.filters["place"] = place
     return environment.from_string(TEMPLATE).render(**content)

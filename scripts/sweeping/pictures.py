@@ -7,12 +7,12 @@ Figures are drawn to files only; no window system is needed.
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.figure import Figure
-from membrane.files import replacing
+from membrane.plots import save
 
 DPI = 110
 ALPHA, BETA = r"$\alpha_c$", r"$\beta$"
 STYLES = (":", "-", "--", "-.")  # of alpha_c; more than these get panels of their own
-TOGETHER = 12  # curves in one panel at most
+MANY = 12  # at most so many curves in one panel, panels, and values written along an axis
 COLOURS = ("#31688e", "#e07b00", "#35a05f", "#b5367a", "#7a5fb0", "#8c6d31")  # of beta
 
 
@@ -39,7 +39,7 @@ def draw_curves(axes, curves, betas=()):
             times,
             values,
             color=_colour(betas, beta),
-            linestyle=STYLES[alphas.index(alpha) % len(STYLES)] if len(alphas) > 1 else "-",
+            linestyle=STYLES[alphas.index(alpha)] if 1 < len(alphas) <= len(STYLES) else "-",
             label=f"{ALPHA} = {alpha:g}, {BETA} = {beta:g}",
         )
     return lines
@@ -53,7 +53,7 @@ def _colour(betas, beta):
 
 
 def plot_curves(curves, ends, label, path):
-    """Curves of all cases over time: in one panel, or in one for each alpha_c if they are many.
+    """Curves of all cases over time: in one panel, or in up to MANY by alpha_c if they are many.
 
     Parameters
     ----------
@@ -66,11 +66,13 @@ def plot_curves(curves, ends, label, path):
     path : path
     """
     alphas = sorted({alpha for alpha, _ in curves})
-    together = len(curves) <= TOGETHER and len(alphas) <= len(STYLES)
-    groups = [alphas] if together else [[alpha] for alpha in alphas]
+    together = len(curves) <= MANY and len(alphas) <= len(STYLES)
+    count = 1 if together else min(len(alphas), MANY)
+    groups = [group.tolist() for group in np.array_split(alphas, count)]
+    betas = sorted({beta for _, beta in curves})
     rows = -(-len(groups) // 3)
     columns = -(-len(groups) // rows)
-    size = (8.5, 4.6) if together else (3.6 * columns + 1.4, 3.2 * rows)
+    size = (8.5, 4.6) if len(groups) == 1 else (3.6 * columns + 1.4, 3.2 * rows)
     figure = Figure(figsize=size, layout="constrained")
     panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel()
     for panel in panels[len(groups) :]:
@@ -78,16 +80,18 @@ def plot_curves(curves, ends, label, path):
     handles = {}
     for number, (panel, group) in enumerate(zip(panels, groups)):
         chosen = {case: curve for case, curve in curves.items() if case[0] in group}
-        lines = draw_curves(panel, chosen, sorted({beta for _, beta in curves}))
+        lines = draw_curves(panel, chosen, betas)
         for (alpha, beta), line in lines.items():
-            handles[line.get_label() if together else f"{BETA} = {beta:g}"] = line
+            if beta in some(betas):
+                handles[line.get_label() if together else f"{BETA} = {beta:g}"] = line
         for case in (case for case in chosen if case in ends):
             times, values = chosen[case]
             colour = lines[case].get_color()
             (cross,) = panel.plot(times[-1], values[-1], "x", color=colour, markersize=9, mew=2)
             handles["diverged"] = cross
         if not together:
-            panel.set_title(f"{ALPHA} = {group[0]:g}", fontsize=10)
+            values = dict.fromkeys([f"{group[0]:g}", f"{group[-1]:g}"])
+            panel.set_title(f"{ALPHA} = {' … '.join(values)}", fontsize=10)
         if number % columns == 0:
             panel.set_ylabel(label)
         if number + columns >= len(groups):
@@ -105,11 +109,16 @@ def plot_curves(curves, ends, label, path):
         loc="upper left",
         bbox_to_anchor=(1, 1),
     )
-    _save(figure, path)
+    save(figure, path, dpi=DPI)
+
+
+def some(values):
+    """All of some values, or evenly chosen ones if they are more than MANY."""
+    return values[:: -(-len(values) // MANY)]
 
 
 def plot_swing(maps, words, path):
-    """Heat maps over alpha_c and beta, side by side.
+    """Heat maps over alpha_c and beta, side by side; with numbers where these are not too many.
 
     Parameters
     ----------
@@ -120,8 +129,9 @@ def plot_swing(maps, words, path):
     path : path
     """
     alphas, betas = (sorted(set(values)) for values in zip(*words))
-    width = max(4.2, 1.1 * len(alphas) + 2.2)
-    height = max(3.0, 0.62 * len(betas) + 1.3)
+    width = max(4.2, 1.1 * min(MANY, len(alphas)) + 2.2)
+    height = max(3.0, 0.62 * min(MANY, len(betas)) + 1.3)
+    cells = [(row, column) for row in range(len(betas)) for column in range(len(alphas))]
     figure = Figure(figsize=(width * len(maps), height), layout="constrained")
     for panel, (title, values) in zip(
         figure.subplots(1, len(maps), squeeze=False)[0], maps.items()
@@ -131,21 +141,15 @@ def plot_swing(maps, words, path):
         )
         image = panel.imshow(table, origin="lower", aspect="auto", cmap="viridis")
         image.cmap.set_bad("0.9")
-        for row, beta in enumerate(betas):
-            for column, alpha in enumerate(alphas):
-                _write(panel, image, row, column, table[row, column], words.get((alpha, beta), ""))
+        for row, column in cells if max(len(alphas), len(betas)) <= MANY else ():
+            word = words.get((alphas[column], betas[row]), "")
+            _write(panel, image, row, column, table[row, column], word)
         panel.set(title=title, xlabel=f"{ALPHA} [-]", ylabel=f"{BETA} [-]")
-        panel.set_xticks(range(len(alphas)), [f"{a:g}" for a in alphas])
-        panel.set_yticks(range(len(betas)), [f"{b:g}" for b in betas])
+        panel.set_xticks(some(range(len(alphas))), [f"{a:g}" for a in some(alphas)])
+        panel.set_yticks(some(range(len(betas))), [f"{b:g}" for b in some(betas)])
         if np.isfinite(table).any():
             figure.colorbar(image, ax=panel)
-    _save(figure, path)
-
-
-def _save(figure, path):
-    """Write a picture whole or not at all: an earlier one stays where the disk is full."""
-    with replacing(path) as part:
-        figure.savefig(part, dpi=DPI, format="png")
+    save(figure, path, dpi=DPI)
 
 
 def three_digits(value):

@@ -4,22 +4,21 @@
 from dataclasses import fields
 from pathlib import Path
 
+from membrane import own
 from membrane.case_folder import COMPLETE, DIVERGED
 from membrane.files import replace_text
 from membrane.parameters import SailParameters
 
-from .grid import AXES, refuse_other_results
+from .grid import AXES, CURVES, PAGE, RESULTS, SWING, TABLE, refuse_other_results
 from .page import render
 from .pictures import plot_curves, plot_swing, three_digits
 from .results import MEASURES, read, varied, write_table
 
-TABLE, PAGE = "cases.csv", "report.html"
-CURVES = {
-    "deployment_rate.png": "Deployment rate of all cases, as in the paper's Figures 8 and 9.",
-    "phase_difference.png": "Mean phase difference between tips and spool of all cases, as in the "
-    "paper's Figures 8 and 9; positive where the tips lead.",
-}
-SWING = "swing.png"
+CAPTIONS = (
+    "Deployment rate of all cases, as in the paper's Figures 8 and 9.",
+    "Mean phase difference between tips and spool of all cases, as in the paper's Figures 8 and 9; "
+    "positive where the tips lead.",
+)
 NOT_SEEN = "not seen"  # where a run ends before what is asked for
 
 
@@ -44,6 +43,7 @@ def report(folder):
     folder = Path(folder)
     refuse_other_results(folder)
     results = read(folder)
+    own.write_list(folder, own.SWEEP, RESULTS)
     write_table(results, folder / TABLE)
     drawn = draw(results, folder)
     replace_text(folder / PAGE, render(**content(results, drawn, folder)))
@@ -72,10 +72,9 @@ def draw(results, folder):
             axes: (r.history["time"], r.history["deployment_rate"]) for axes, r in curves.items()
         }
         phases = {axes: (r.history["time"], r.degrees) for axes, r in curves.items()}
-        names = list(CURVES)
-        plot_curves(rates, ends, "deployment rate [-]", folder / names[0])
-        plot_curves(phases, ends, "mean phase difference [deg]", folder / names[1])
-        drawn |= CURVES
+        plot_curves(rates, ends, "deployment rate [-]", folder / CURVES[0])
+        plot_curves(phases, ends, "mean phase difference [deg]", folder / CURVES[1])
+        drawn |= zip(CURVES, CAPTIONS)
     maps = {
         f"{name} of the phase difference [{MEASURES[name][0]}]": {
             r.axes: r.measures[name] for r in results

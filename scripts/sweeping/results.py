@@ -41,7 +41,7 @@ class Result:
 
     @property
     def history(self):
-        """Columns (S,) of its history.csv by name; None where there is none."""
+        """CURVES (S,) of its history.csv by name; None where there are none."""
         return self.status.history
 
     @property
@@ -59,7 +59,7 @@ def read(folder):
     """The Results of all cases of a sweep in `folder`, by rising alpha_c and beta."""
     found = []
     for place, planned in case_folders(folder).items():
-        status = look(place)
+        status = look(place, planned or None)
         status.parameters = status.parameters or planned
         is_complete = status.state == COMPLETE
         measured = measure(status.history) if is_complete else dict.fromkeys(MEASURES)

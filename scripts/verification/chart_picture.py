@@ -9,6 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from matplotlib.ticker import LogLocator, NullFormatter
 from matplotlib.transforms import Bbox
+from membrane.plots import save
 
 TITLES = {
     "deployment": ("Early deployment curve", "processor time for 1 s [s]", "rms error of rate [-]"),
@@ -48,7 +49,7 @@ def draw(points, path):
     )
     for question, axes in panels.items():
         _add_labels(axes, [p for p in points if p.question == question])
-    figure.savefig(path)
+    save(figure, path)
     return figure
 
 

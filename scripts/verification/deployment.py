@@ -10,7 +10,7 @@ from functools import cache
 
 import numpy as np
 from matplotlib.figure import Figure
-from membrane import measures, sail, scene
+from membrane import measures, plots, sail, scene
 from membrane.parameters import TABLE_2_DURATION, SailParameters
 from yade import wrapper as yade
 
@@ -497,7 +497,7 @@ def draw(runs, distances, path):
     for axes in (rate, phase, growth):
         axes.grid(alpha=0.3)
         axes.margins(x=0)
-    figure.savefig(path, dpi=100)
+    plots.save(figure, path, dpi=100)
 
 
 # Last values: Lyapunov times [s] within GROWTHS, the power of time with which distances grow,

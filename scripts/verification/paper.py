@@ -17,6 +17,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from membrane.measures import lag_and_half_period
 from membrane.parameters import TABLE_2_CASES, SailParameters
+from membrane.plots import save
 from sweeping.pictures import draw_curves
 
 from . import ROOT, Check, at_most, recorded
@@ -104,7 +105,7 @@ def draw(runs, swings, path):
     marks.legend(frameon=False, fontsize=7)
     for axes in (curves, marks):
         axes.grid(alpha=0.3)
-    figure.savefig(path, dpi=110)
+    save(figure, path, dpi=110)
 
 
 def claims(kind, values, spread, unit):

@@ -304,12 +304,12 @@ def run_calculix(deck, count):
     if not shutil.which("ccx"):
         raise RuntimeError("CalculiX (ccx) is missing: on Debian 12, apt-get install calculix-ccx")
     with tempfile.TemporaryDirectory(prefix="calculix-") as folder:
-        Path(folder, "petal.inp").write_text(deck)
+        Path(folder, "petal.inp").write_text(deck, encoding="utf-8")
         done = subprocess.run(
-            ["ccx", "petal"], cwd=folder, capture_output=True, text=True, timeout=300
+            ["ccx", "petal"], cwd=folder, capture_output=True, encoding="utf-8", timeout=300
         )
         results = Path(folder, "petal.dat")
-        printed = results.read_text() if results.exists() else ""
+        printed = results.read_text(encoding="utf-8") if results.exists() else ""
     rows = [line.split() for line in printed.splitlines() if line and "(" not in line]
     if done.returncode or [len(row) for row in rows] != [4] * count + [3]:
         raise RuntimeError(f"CalculiX failed: {done.stdout[-1000:]}{done.stderr[-1000:]}")

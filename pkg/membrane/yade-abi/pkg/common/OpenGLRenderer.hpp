@@ -23,8 +23,10 @@ YADE_ABI_TAIL(GlExtraDrawer, 33);
 YADE_ABI_SAVED(GlExtraDrawer)
 
 // Of the renderer no more than these is known here: it is never made, copied or looked into.
-class OpenGLRenderer {
+class OpenGLRenderer : public Serializable {
 public:
+    // makes the functors of drawing anew, with room for all classes of shapes that there are
+    void initgl();
     void hide(Body::id_t);
     void show(Body::id_t);
     OpenGLRenderer() = delete;
