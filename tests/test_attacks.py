@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The attacks of tests/attacks: that they miss nothing and notice harm; with --full, that they do none."""
+"""The attacks of tests/attacks: they miss nothing and notice harm; with --full, they do none."""
 
 import re
 import subprocess

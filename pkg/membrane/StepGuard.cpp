@@ -124,7 +124,8 @@ abi::Access::~Access() {}
 
 void StepGuard::refuseCall(const Engine& engine) {
     if (othersRun() && PyGILState_Check())
-        throw std::runtime_error(engine.getClassName() + ": the scene is running, with its own calls of this engine; pause it");
+        throw std::runtime_error(engine.getClassName() +
+                                 ": the scene is running, with its own calls of this engine; pause it");
 }
 
 void StepGuard::holdForSave() {

@@ -275,8 +275,8 @@ def set_engines(
     )
     geometry, physics, laws, collider = [], [], [], []
     if touching or not fused:
-        # Also where the sides are no interactions: should they become some, YADE would end for want of
-        # it, before the forces engine can refuse them.
+        # Also where the sides are no interactions: should they become some, YADE would end for want
+        # of it, before the forces engine can refuse them.
         laws = [_plugin["Law2_MembraneGeom_MembranePhys_Buckling"]()]
     others = []
     if len(scene.bodies) > len(membrane.bodyIds):

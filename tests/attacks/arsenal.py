@@ -38,7 +38,7 @@ DECLARATION = re.compile(r"YADE_CLASS_BASE_DOC\w*\((\w+),|\(\(([\w<>]+(?: \w+)?)
 
 
 def _own_attributes():
-    """Types of the plugin's attributes by class and name, as its headers tell, hidden ones included."""
+    """Types of the plugin's attributes by class and name, hidden ones too, as its headers tell."""
     found = {}
     for header in sorted(HEADERS.glob("*.hpp")):
         for cls, kind, name in DECLARATION.findall(header.read_text()):

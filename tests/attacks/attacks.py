@@ -76,10 +76,15 @@ def positions():
     return np.array([body.state.pos for body in O.bodies])
 
 
+def give_engines(engines):
+    """Let the scene run these."""
+    O.engines = engines
+
+
 def go_on(world, steps=STEPS):
     """Run on; gives what stopped the run, or None. It has to be stopped where numbers are lost."""
     if not O.engines:
-        attempt(lambda: setattr(O, "engines", world.engines))
+        attempt(lambda: give_engines(world.engines))
     stopped = attempt(O.wait if world.running else lambda: scene.advance(steps))
     if not (stopped or np.all(np.isfinite(positions()))):  # lost in the last step, it may be
         stopped = attempt(lambda: scene.advance(1))
@@ -168,7 +173,7 @@ def put(world, old, new):
 
 
 def attack_attribute(world, name, member, chance, tell):
-    """Set an attribute to something; gives the value, or None, and the exception that refused it."""
+    """Set an attribute to something; gives the value, or None, and what refused it."""
     one = world.objects[name]
     present = getattr(one, member, None)
     kind = attributes(type(one))[member]
@@ -214,7 +219,7 @@ def attack_engines(world, _, __, chance, tell):
             engines[here].dead = not engines[here].dead
         elif change == "add":
             engines.insert(there, chance.choice(new))
-    return None, attempt(lambda: setattr(O, "engines", engines))
+    return None, attempt(lambda: give_engines(engines))
 
 
 def attack_a_body(world, _, __, chance, tell):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Saved scenes that are damaged where the plugin's own objects are. All of a case follows from its name."""
+"""Saved scenes damaged where the plugin's own objects are. All of a case follows from its name."""
 
 import copy
 import xml.etree.ElementTree as tree

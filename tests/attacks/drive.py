@@ -57,7 +57,7 @@ def start(note, *arguments):
 
 
 def carry_out(note, *arguments):
-    """Run the suite, after each attack that it does not survive once more from there; the harm done."""
+    """Run the suite, after each attack that ends it once more from there; the harm done."""
     harm, begin = [], 0
     while True:
         said, story = start(note, *arguments, "--from", begin)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The scenes in which the plugin is attacked: one that has everything, before, during and after its run."""
+"""Scenes in which the plugin is attacked: one with everything, before, during and after its run."""
 
 from dataclasses import dataclass, field
 
@@ -16,7 +16,7 @@ MEANWHILE = 40  # steps during an attack from another thread
 
 
 def build(path):
-    """A creased sheet whose tether lies on a spool that turns freely, with every engine there is."""
+    """A creased sheet, its tether on a spool that turns freely, with every engine there is."""
     O.reset()
     facets = spool.add_spool(RADIUS, facets=6)
     outwards, along = np.array([[3**0.5 / 2, 0.5, 0], [-0.5, 3**0.5 / 2, 0]])

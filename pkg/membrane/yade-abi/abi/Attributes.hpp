@@ -87,8 +87,7 @@ public:
         current_ = outer_;
         PyObject *type, *value, *trace; // of what is being raised
         PyErr_Fetch(&type, &value, &trace);
-        for (auto back = back_.rbegin(); back != back_.rend(); ++back)
-            try {
+        for (auto back = back_.rbegin(); back != back_.rend(); ++back) try {
                 (*back)();
             } catch (const py::error_already_set&) { // it was no attribute
                 PyErr_Clear();
