@@ -40,6 +40,9 @@ usage: scripts/run.sh COMMAND [options]
                             options of scripts/calibrate.py
   sanitize                  the C++ tests under address and undefined-behaviour sanitizers, and the
                             threads under a race check
+  attack [--short] [NAME ...]
+                            the plugin in YADE under the same sanitizers: every class and method with
+                            what fits nowhere, in scenes of every kind, and damaged saved scenes
   build                     compile the plugin into build/python
   format [--check]          format C++ and Python sources; --check changes nothing and fails where
                             a file is not formatted or a linter complains
@@ -225,28 +228,44 @@ run_tests() {
     run_yade "$root/tests/run_tests.py" "$@"
 }
 
-# run_sanitized FOLDER SANITIZERS COMPILER TEST...: builds C++ tests with sanitizers, all if none is named, and runs them.
-run_sanitized() {
-    local folder=$root/$1 sanitizers=$2 compiler=$3
-    local -a tests=("${@:4}")
+# build_sanitized FOLDER SANITIZERS COMPILER PLUGIN TARGET...: builds with sanitizers, with the plugin if that is ON.
+build_sanitized() {
+    local folder=$root/$1
     if ! {
-        cmake -S "$root" -B "$folder" -G "Unix Makefiles" -DMEMBRANE_PLUGIN=OFF -DMEMBRANE_SANITIZE="$sanitizers" \
-            -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS=-O1 &&
-            cmake --build "$folder" --parallel "$(nproc)" --target "${tests[@]:-all}"
+        cmake -S "$root" -B "$folder" -G "Unix Makefiles" -DMEMBRANE_PLUGIN="$4" -DMEMBRANE_SANITIZE="$2" \
+            -DCMAKE_CXX_COMPILER="$3" -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS="-O1 -D_GLIBCXX_ASSERTIONS" &&
+            cmake --build "$folder" --parallel "$(nproc)" --target "${@:5}"
     } >"$folder.log" 2>&1; then
         cat "$folder.log" >&2
-        die "sanitize: the build in $folder failed"
+        die "$command: the build in $folder failed"
     fi
-    local IFS='|'
-    ctest --test-dir "$folder" --label-regex kernel --tests-regex "${tests[*]:-.}" --output-on-failure
 }
+
+# run_sanitized FOLDER SANITIZERS COMPILER TEST...: builds C++ tests with sanitizers, all if none is named, and runs them.
+run_sanitized() {
+    local -a tests=("${@:4}")
+    build_sanitized "$1" "$2" "$3" OFF "${tests[@]:-all}"
+    local IFS='|'
+    ctest --test-dir "$root/$1" --label-regex kernel --tests-regex "${tests[*]:-.}" --output-on-failure
+}
+
+memory_sanitizers=address,undefined,float-cast-overflow
 
 sanitize() {
     need "${sanitize_packages[@]}"
-    UBSAN_OPTIONS=print_stacktrace=1 run_sanitized build-asan address,undefined g++
+    UBSAN_OPTIONS=print_stacktrace=1 run_sanitized build-asan $memory_sanitizers g++
     OMP_TOOL_LIBRARIES=/usr/lib/llvm-14/lib/libarcher.so \
         TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1" \
         run_sanitized build-tsan thread clang++-14 test_Sweep test_Lanczos test_LinearForces
+}
+
+# The plugin, built with sanitizers into the folder of its C++ tests, in YADE.
+attack() {
+    need "${run_packages[@]}"
+    build=$root/build-asan
+    build_sanitized build-asan $memory_sanitizers g++ ON _membrane membrane_python
+    set_environment
+    exec python3 "$root/tests/attacks/drive.py" "$@"
 }
 
 # List the sources of a language; build/ and hidden folders are not searched.
@@ -372,6 +391,7 @@ sanitize)
     take_nothing "$@"
     sanitize
     ;;
+attack) attack "$@" ;;
 build)
     take_nothing "$@"
     compile

@@ -9,6 +9,7 @@ namespace yade {
 YADE_PLUGIN((CentrifugalField));
 
 void CentrifugalField::action() {
+    StepGuard::refuseCall(*this);
     if (!membrane) throw std::runtime_error("CentrifugalField: membrane is not set");
     for (const auto& engine : scene->engines) {
         auto* forces = dynamic_cast<MembraneForceEngine*>(engine.get());

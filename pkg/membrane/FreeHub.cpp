@@ -40,6 +40,7 @@ void FreeHub::postLoad(FreeHub&) {
 }
 
 void FreeHub::action() {
+    StepGuard::refuseCall(*this);
     if (!forces || !forces->membrane) throw std::runtime_error("FreeHub: forces is not set, or has no membrane");
     if (!forces->hasRun(*scene))
         throw std::runtime_error("FreeHub: its MembraneForceEngine must run in the same step, before it");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MembraneFault.hpp"
+#include "StepGuard.hpp"
 #include <algorithm>
 #include <core/Scene.hpp>
 #include <mutex>
@@ -40,6 +41,7 @@ void MembraneFault::raise(Scene& scene) {
 }
 
 void MembraneFault::action() {
+    StepGuard::refuseCall(*this);
     const auto self = shared_from_this(); // which the list alone may keep alive
     auto& engines = scene->engines;
     engines.erase(std::remove(engines.begin(), engines.end(), self), engines.end());
@@ -47,6 +49,7 @@ void MembraneFault::action() {
 }
 
 void MembraneFault::stop() const {
+    if (message.empty()) throw std::runtime_error("MembraneFault: nothing was noted");
     throw std::runtime_error(message + (count > 1 ? " (and " + std::to_string(count - 1) + " more in this step)" : ""));
 }
 

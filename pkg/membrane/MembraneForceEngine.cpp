@@ -34,6 +34,10 @@ void requireNotNegative(const char* field, Real value) {
 
 } // namespace
 
+bool allFinite(const vector<Vector3r>& all) {
+    return std::all_of(all.begin(), all.end(), [](const Vector3r& one) { return one.allFinite(); });
+}
+
 bool isHeld(const State& state) {
     return (state.blockedDOFs & State::DOF_XYZ) == State::DOF_XYZ;
 }
@@ -60,16 +64,17 @@ void MembraneForceEngine::postLoad(MembraneForceEngine&) {
     if (creaseLaw != "paper" && creaseLaw != "conservative")
         refuse("creaseLaw", creaseLaw, "'paper' or 'conservative'");
     if (timeStepCheckPeriod <= 0) refuse("timeStepCheckPeriod", timeStepCheckPeriod, "> 0");
+    if (seenPositions.size() != seenVelocities.size())
+        throw std::invalid_argument("MembraneForceEngine: seenPositions and seenVelocities must be of one length");
+    if (!allFinite(seenPositions) || !allFinite(seenVelocities))
+        throw std::invalid_argument("MembraneForceEngine: seenPositions and seenVelocities must be finite");
     preparedFor_.clear();
     if (membrane != preparedMembrane_) forget();
 }
 
 /// What was computed for another membrane.
 void MembraneForceEngine::forget() {
-    if (preparedMembrane_) { // else they are those of a saved engine, which is to go on
-        seenPositions.clear();
-        seenVelocities.clear();
-    }
+    if (preparedMembrane_) forgetSeen(); // else they are those of a saved engine, which is to go on
     preparedMembrane_.reset();
     lastStep_ = -1;
     madeSums_ = ::membrane::Sums::none;
@@ -98,6 +103,7 @@ void MembraneForceEngine::preSave(MembraneForceEngine&) {
 }
 
 void MembraneForceEngine::action() {
+    StepGuard::refuseCall(*this);
     const StepGuard::Step guarded;
     try {
         step();
@@ -222,7 +228,10 @@ void MembraneForceEngine::gather() {
         seenVelocities[i] = state.vel;
         probe += 0. * (state.pos.sum() + state.vel.sum());
     }
-    if (!(probe == 0.)) stopDiverged();
+    if (!(probe == 0.)) {
+        forgetSeen();
+        stopDiverged();
+    }
 }
 
 void MembraneForceEngine::stopDiverged() const {
@@ -341,8 +350,7 @@ void MembraneForceEngine::checkTimeStep() {
     if (forceTimeStep) return;
     writeBack();
     TimeStepState now = timeStepState(*scene, bodies_, contacts_);
-    const auto isFinite = [](const Vector3r& x) { return x.allFinite(); };
-    if (!std::all_of(now.positions.begin(), now.positions.end(), isFinite)) return; // gather() tells
+    if (!allFinite(now.positions)) return; // gather() tells
     if (::membrane::withinCriticalTimeStep(now.input(*membrane, law()), scene->dt)) return;
     checkedStep_ = -1.;
     std::ostringstream message;

@@ -59,7 +59,7 @@ public:
     /// Brings the bodies up to date, if this engine moves them itself.
     virtual void writeBack() {}
     /// The nodes' present velocities were given by hand: until the next step they count as they are.
-    virtual void forgetVelocities() { seenPositions.clear(); }
+    virtual void forgetVelocities() { forgetSeen(); }
     virtual vector<Vector3r> nodeForces();
     /// Whether a CentrifugalField need not put its forces on the nodes: this engine counts them in.
     virtual bool takesField(const Scene&) const { return false; }
@@ -146,6 +146,10 @@ protected:
     void continueLedger(const MembraneLedger* ledger, ::membrane::Sums wanted);
     bool isPreparedFor(const Scene& in) const { return preparedFor_.is(&in); }
     [[noreturn]] void stopDiverged() const;
+    void forgetSeen() {
+        seenPositions.clear();
+        seenVelocities.clear();
+    }
 
 private:
     SceneMark preparedFor_; ///< with the present parameters
@@ -174,6 +178,8 @@ private:
     vector<Vector3r> ofNodes(Vector3r (::membrane::Sweep::*force)(int) const) const;
 };
 REGISTER_SERIALIZABLE(MembraneForceEngine);
+
+bool allFinite(const vector<Vector3r>& all);
 
 /// Whether a node cannot move but as it is driven.
 bool isHeld(const State& state);

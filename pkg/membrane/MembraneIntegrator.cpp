@@ -29,6 +29,10 @@ void MembraneIntegrator::postLoad(MembraneIntegrator&) {
     if (exchangePeriod <= 0)
         throw std::invalid_argument("MembraneIntegrator: exchangePeriod = " + std::to_string(exchangePeriod) +
                                     " must be > 0");
+    if (!centredVelocities.empty() && centredVelocities.size() != seenPositions.size())
+        throw std::invalid_argument("MembraneIntegrator: centredVelocities and seenPositions must be of one length");
+    if (!allFinite(centredVelocities))
+        throw std::invalid_argument("MembraneIntegrator: centredVelocities must be finite");
 }
 
 void MembraneIntegrator::fetch() {
@@ -42,6 +46,9 @@ void MembraneIntegrator::fetch() {
         seenPositions[shared_[k]] = sharedSeenPositions_[k];
         seenVelocities[shared_[k]] = sharedSeenVelocities_[k];
     }
+    if (allFinite(seenPositions) && allFinite(seenVelocities) && allFinite(centredVelocities)) return;
+    centredVelocities.clear(); // of a run that diverged nothing is to go on
+    forgetSeen();
 }
 
 /// Whether a node may be moved here: it can touch nothing and is free.
@@ -90,7 +97,6 @@ void MembraneIntegrator::arrange() {
     vector<Vector3r> seenX, seenV;
     vector<int> shared;
     const bool continued = holds(*scene);
-    const Vector3r never = Vector3r::Constant(NaN);
     owned_.clear();
     for (const int i : allNodes_) {
         mine[i] = belongsHere(i);
@@ -108,8 +114,9 @@ void MembraneIntegrator::arrange() {
             continue;
         }
         if (bodies_[i]->groupMask == nodeMask) bodies_[i]->groupMask = maskByDefault;
-        seenX.push_back(wasShared ? sharedSeenPositions_[k] : continued ? positionSeen(i) : never);
-        seenV.push_back(wasShared ? sharedSeenVelocities_[k] : continued ? velocitySeen(i) : never);
+        // One that was never seen counts as seen here: then its velocity is taken as it is.
+        seenX.push_back(wasShared ? sharedSeenPositions_[k] : continued ? positionSeen(i) : states_[i]->pos);
+        seenV.push_back(wasShared ? sharedSeenVelocities_[k] : continued ? velocitySeen(i) : states_[i]->vel);
         shared.push_back(i);
     }
     shared_.swap(shared);

@@ -35,6 +35,7 @@ Vector3r freeDirections(const State& state) {
 } // namespace
 
 void MembraneLedger::action() {
+    StepGuard::refuseCall(*this);
     if (!forces || !forces->membrane) throw std::runtime_error("MembraneLedger: forces is not set, or has no membrane");
     const Membrane& membrane = *forces->membrane;
     if (!forces->hasRun(*scene) || forces->madeSums() == ::membrane::Sums::none)

@@ -13,7 +13,14 @@ void MembraneTimeStepper::postLoad(MembraneTimeStepper&) {
                                     " must be in (0, 1]");
 }
 
+bool MembraneTimeStepper::isActivated() {
+    if (timeStepUpdateInterval == 0) // by which YADE divides
+        throw std::runtime_error("MembraneTimeStepper: timeStepUpdateInterval = 0 must be > 0");
+    return TimeStepper::isActivated();
+}
+
 void MembraneTimeStepper::computeTimeStep(Scene* now) {
+    StepGuard::refuseCall(*this);
     if (!forces) throw std::runtime_error("MembraneTimeStepper: forces is not set");
     const Real limit = forces->criticalTimeStep();
     if (std::isfinite(limit)) now->dt = fraction * limit;

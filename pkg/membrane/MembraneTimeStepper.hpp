@@ -7,6 +7,7 @@ namespace yade {
 
 class MembraneTimeStepper : public TimeStepper {
 public:
+    bool isActivated() override;
     void computeTimeStep(Scene* now) override;
     void postLoad(MembraneTimeStepper&);
 

@@ -52,6 +52,7 @@ void MembraneWatch::postLoad(MembraneWatch&) {
 }
 
 void MembraneWatch::action() {
+    StepGuard::refuseCall(*this);
     if (!ledger || !ledger->forces) throw std::runtime_error("MembraneWatch: ledger is not set, or has no forces");
     if (ledger->dead || !ledger->isUpToDate(*scene)) return;
     if (floor_ == 0.)

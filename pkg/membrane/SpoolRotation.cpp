@@ -2,6 +2,7 @@
 #include "SpoolRotation.hpp"
 #include "BodyAt.hpp"
 #include "RunEnd.hpp"
+#include "StepGuard.hpp"
 #include <cmath>
 
 namespace yade {
@@ -15,6 +16,7 @@ void SpoolRotation::postLoad(SpoolRotation&) {
 }
 
 void SpoolRotation::action() {
+    StepGuard::refuseCall(*this);
     const Real next = angle + angularVelocity * scene->dt;
     if (mayTouch())
         turnFacets(angle);

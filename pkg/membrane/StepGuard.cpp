@@ -2,6 +2,7 @@
 #include "StepGuard.hpp"
 #include <chrono>
 #include <condition_variable>
+#include <core/Engine.hpp>
 #include <core/Omega.hpp>
 #include <mutex>
 #include <thread>
@@ -25,6 +26,7 @@ unsigned long given = 0, admitted = 0; ///< numbers below these
 int waiting = 0, pending = 0;          ///< who wait or look; those of them that are admitted
 
 thread_local bool runsScene = false; ///< this thread was made by YADE to run a scene
+thread_local bool looksHere = false; ///< this thread holds a Look
 
 /// Gives up Python's lock for its lifetime, if this thread has it: whom we wait for may need it.
 class WithoutPython {
@@ -80,7 +82,7 @@ StepGuard::Step::~Step() {
 }
 
 StepGuard::Look::Look(bool between) : holds_(false) {
-    if (runsScene) return;
+    if (runsScene || looksHere) return;
     {
         const std::lock_guard<std::mutex> lock(guard);
         if (computing == std::this_thread::get_id()) return;
@@ -97,14 +99,14 @@ StepGuard::Look::Look(bool between) : holds_(false) {
         return mayEnter && !looking && computing == std::thread::id();
     };
     while (!comesIn()) changed.wait_for(lock, std::chrono::milliseconds(5)); // the end of a run tells nobody
-    looking = holds_ = true;
+    looking = looksHere = holds_ = true;
 }
 
 StepGuard::Look::~Look() {
     if (!holds_) return;
     {
         const std::lock_guard<std::mutex> lock(guard);
-        looking = false;
+        looking = looksHere = false;
         --waiting;
         if (number_ < admitted) --pending;
     }
@@ -113,6 +115,17 @@ StepGuard::Look::~Look() {
 
 bool StepGuard::othersRun() {
     return !runsScene && Omega::instance().isRunning();
+}
+
+#ifdef YADE_ABI_TYPE // not in a YADE source tree, whose attributes are read and set at any time
+abi::Access::Access() : held_(std::make_shared<StepGuard::Look>()) {}
+abi::Access::~Access() {}
+#endif
+
+void StepGuard::refuseCall(const Engine& engine) {
+    if (othersRun() && PyGILState_Check())
+        throw std::runtime_error(engine.getClassName() +
+                                 ": the scene is running, with its own calls of this engine; pause it");
 }
 
 void StepGuard::holdForSave() {

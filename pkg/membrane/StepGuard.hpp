@@ -3,6 +3,8 @@
 
 namespace yade {
 
+class Engine;
+
 /// One lock for all of the plugin that other threads can call while YADE runs a scene in the background, as Python and
 /// the 3D view do: they get in when the running step arrives at an engine of membrane forces, where all bodies are at
 /// the same time, or at once where nothing runs.
@@ -35,6 +37,9 @@ public:
     static void holdForSave();
     /// Whether a scene is running in another thread.
     static bool othersRun();
+    /// Refuses an engine's action that Python calls while a scene is running.
+    /// \throws std::runtime_error naming the engine
+    static void refuseCall(const Engine& engine);
 };
 
 /// A member function behind a StepGuard::Look, to be called from Python.

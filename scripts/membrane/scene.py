@@ -274,6 +274,10 @@ def set_engines(
         **own,
     )
     geometry, physics, laws, collider = [], [], [], []
+    if touching or not fused:
+        # Also where the sides are no interactions: should they become some, YADE would end for want
+        # of it, before the forces engine can refuse them.
+        laws = [_plugin["Law2_MembraneGeom_MembranePhys_Buckling"]()]
     others = []
     if len(scene.bodies) > len(membrane.bodyIds):
         others = sorted({body.id for body in scene.bodies}.difference(membrane.bodyIds))
@@ -287,7 +291,6 @@ def set_engines(
                 body.mask = 1
         geometry = [_plugin["Ig2_MembraneNode_MembraneNode_MembraneGeom"]()]
         physics = [_plugin["Ip2_MembraneMat_MembraneMat_MembranePhys"](membrane=membrane)]
-        laws = [_plugin["Law2_MembraneGeom_MembranePhys_Buckling"]()]
     if not set(touching).issubset(membrane.bodyIds):
         stranger = min(set(touching).difference(membrane.bodyIds))
         raise ValueError(f"set_engines: touching: body #{stranger} is no node of the membrane")

@@ -8,6 +8,8 @@
 
 #include <boost/python.hpp>
 #include <boost/python/raw_function.hpp>
+#include <functional>
+#include <memory>
 #include <type_traits>
 
 #define YADE_ABI_TYPE(attr) BOOST_PP_TUPLE_ELEM(5, 0, attr)
@@ -32,7 +34,8 @@
         archive& ::boost::serialization::make_nvp(YADE_ABI_NAME_TEXT(attr), this->YADE_ABI_NAME(attr));
 #define YADE_ABI_SET(r, data, attr)                                                                                    \
     if (key == YADE_ABI_NAME_TEXT(attr)) {                                                                             \
-        this->YADE_ABI_NAME(attr) = ::boost::python::extract<decltype(this->YADE_ABI_NAME(attr))>(value)();            \
+        ::yade::abi::Changes::set(this->YADE_ABI_NAME(attr),                                                           \
+                                  ::boost::python::extract<decltype(this->YADE_ABI_NAME(attr))>(value)());             \
         return;                                                                                                        \
     }
 #define YADE_ABI_TO_DICT(r, dict, attr)                                                                                \
@@ -65,6 +68,81 @@ template <typename T> void postSave(T&) {}
 namespace abi {
 namespace py = ::boost::python;
 
+// Kept while Python reads or sets an attribute. The plugin defines it: it knows what else may do so at that time.
+class Access {
+public:
+    Access();
+    ~Access();
+
+private:
+    std::shared_ptr<void> held_;
+};
+
+// The changes of attributes in its life, which are taken back unless they are kept. More than YADE does: there an
+// attribute is left with a value that was refused.
+class Changes {
+public:
+    Changes() : outer_(current_) { current_ = this; }
+    ~Changes() {
+        current_ = outer_;
+        PyObject *type, *value, *trace; // of what is being raised
+        PyErr_Fetch(&type, &value, &trace);
+        for (auto back = back_.rbegin(); back != back_.rend(); ++back) try {
+                (*back)();
+            } catch (const py::error_already_set&) { // it was no attribute
+                PyErr_Clear();
+            }
+        PyErr_Restore(type, value, trace);
+    }
+    Changes(const Changes&) = delete;
+    Changes& operator=(const Changes&) = delete;
+
+    template <class T> static void set(T& attribute, const T& value) {
+        remember([&attribute, old = attribute] { attribute = old; });
+        attribute = value;
+    }
+    static void remember(std::function<void()> back) {
+        if (current_) current_->back_.push_back(std::move(back));
+    }
+    void keep() { back_.clear(); }
+
+private:
+    inline static thread_local Changes* current_ = nullptr;
+    Changes* outer_;
+    std::vector<std::function<void()>> back_; // what brings each of them back
+};
+
+// Changes attributes and lets the object see to what follows from them; or, if that is refused, does neither.
+template <class Class, class Change> void change(Class& object, Change apply) {
+    const Access access;
+    try {
+        Changes changes;
+        apply();
+        changes.keep();
+    } catch (...) {
+        try {
+            object.callPostLoad();
+        } catch (...) { // it refuses the old ones, too
+        }
+        throw;
+    }
+}
+
+template <class Class> void updateAttrs(const py::object& self, const py::dict& values) {
+    Class& object = py::extract<Class&>(self);
+    change(object, [&] {
+        // Those that YADE's own functions set, too.
+        const py::list names = values.keys();
+        for (py::ssize_t i = 0; i < py::len(names); ++i) {
+            const py::object name(names[i]);
+            if (!PyObject_HasAttr(self.ptr(), name.ptr())) continue;
+            const string key = py::extract<string>(name);
+            Changes::remember([&object, key, old = py::object(self.attr(name))] { object.pySetAttr(key, old); });
+        }
+        object.pyUpdateAttrs(values);
+    });
+}
+
 // Python may change a component of these in place, as in state.vel[2] = 0; of anything else it gets a copy.
 template <class T> struct GivenByReference : std::false_type {};
 template <> struct GivenByReference<Vector2i> : std::true_type {};
@@ -80,19 +158,26 @@ void defineAttribute(PythonClass& pythonClass, const char* name, T Class::*attri
         using Policy = std::conditional_t<GivenByReference<T>::value, py::return_internal_reference<>,
                                           py::return_value_policy<py::return_by_value>>;
         doc += " :yattrflags:`" + std::to_string(flags) + "` ";
-        const py::object getter = py::make_getter(attribute, Policy());
+        const auto get = [attribute](const Class& object) -> T {
+            const Access access;
+            return object.*attribute;
+        };
+        const py::object getter =
+            GivenByReference<T>::value || std::is_arithmetic<T>::value
+                ? py::make_getter(attribute, Policy())
+                : py::make_function(get, py::default_call_policies(), boost::mpl::vector2<T, const Class&>());
         if constexpr (flags & Attr::readonly) {
             pythonClass.add_property(name, getter, doc.c_str());
-        } else if constexpr (flags & Attr::triggerPostLoad) {
+        } else {
             const auto set = [attribute](Class& object, const T& value) {
-                object.*attribute = value;
-                object.callPostLoad();
+                change(object, [&] {
+                    Changes::set(object.*attribute, value);
+                    if (flags & Attr::triggerPostLoad) object.callPostLoad();
+                });
             };
             const py::object setter =
                 py::make_function(set, py::default_call_policies(), boost::mpl::vector3<void, Class&, const T&>());
             pythonClass.add_property(name, getter, setter, doc.c_str());
-        } else {
-            pythonClass.add_property(name, getter, py::make_setter(attribute), doc.c_str());
         }
     }
 }

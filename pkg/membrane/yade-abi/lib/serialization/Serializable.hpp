@@ -93,6 +93,7 @@ public:                                                                         
         Base::pySetAttr(key, value);                                                                                   \
     }                                                                                                                  \
     ::boost::python::dict pyDict() const override {                                                                    \
+        const ::yade::abi::Access access;                                                                              \
         ::boost::python::dict ret;                                                                                     \
         BOOST_PP_SEQ_FOR_EACH(YADE_ABI_TO_DICT, ret, attrs)                                                            \
         ret.update(this->pyDictCustom());                                                                              \
@@ -110,6 +111,7 @@ public:                                                                         
         ::boost::python::class_<Class, ::boost::shared_ptr<Class>, ::boost::python::bases<Base>, ::boost::noncopyable> \
             _classObj(#Class, doc);                                                                                    \
         _classObj.def("__init__", ::yade::abi::keywordConstructor<Class>());                                           \
+        _classObj.def("updateAttrs", &::yade::abi::updateAttrs<Class>, "Set attributes from a dict, all or none.");    \
         BOOST_PP_SEQ_FOR_EACH(YADE_ABI_TO_PYTHON, Class, attrs)                                                        \
         (void)_classObj py;                                                                                            \
     }
