@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "DragKernel.hpp"
-#include "../mechanics/Drag.hpp"
 #include "BlockTransfer.hpp"
 
 namespace membrane {
@@ -11,50 +10,81 @@ inline void compute(int padded, const Components (&x)[3], const Components (&u)[
 #pragma GCC ivdep
     for (int e = 0; e < padded; ++e) {
         const Eigen::Vector3d corner = a.at(e);
-        const Eigen::Vector3d area = (b.at(e) - corner).cross(c.at(e) - corner);
+        const Eigen::Vector3d area = doubleArea(corner, b.at(e), c.at(e));
         weight[0][e] = dragWeight(area, ua.at(e));
         weight[1][e] = dragWeight(area, ub.at(e));
         weight[2][e] = dragWeight(area, uc.at(e));
     }
 }
 
-} // namespace
-
-DragTable dragTable(const std::vector<Eigen::Vector3i>& triangles, const Partition& partition) {
-    std::vector<std::array<int, 3>> corners;
-    corners.reserve(triangles.size());
-    for (const Eigen::Vector3i& t : triangles) {
-        corners.push_back({t[0], t[1], t[2]});
-        std::sort(corners.back().begin(), corners.back().end());
+/// Adds the weights of one corner of a block's triangles to its nodes.
+inline void addWeights(const Block& block, const double* weight, const int* node, const WeightWindow& to) {
+    if (block.run) {
+        double* const target = to.values + (node[0] - to.first);
+        const int padded = block.paddedCount();
+#pragma GCC ivdep
+        for (int e = 0; e < padded; ++e) target[e] += weight[e];
+    } else {
+        for (int e = 0; e < block.count(); ++e) to.values[node[e] - to.first] += weight[e];
     }
-    return {arrange<3>(corners, partition)};
 }
 
-MEMBRANE_VECTORISED void addDragWeights(const DragTable& table, int group, const Components& x, const Components& u,
-                                        const WeightWindow& to) {
+MEMBRANE_VECTORISED void addDragWeights(const Arrangement<3>& order, int group, const GroupJob& job) {
     BlockVectors roomX[3], roomU[3];
     double added[3][blockSize];
-    for (int i = table.order.groups[group]; i < table.order.groups[group + 1]; ++i) {
-        const Block block = table.order.blocks[i];
+    for (int i = order.groups[group]; i < order.groups[group + 1]; ++i) {
+        const Block block = order.blocks[i];
         const int* node[3];
-        for (int k = 0; k < 3; ++k) node[k] = table.order.node[k].data() + block.begin;
-        const Components at[] = {cornerOf(block, node[0], x, roomX[0]), cornerOf(block, node[1], x, roomX[1]),
-                                 cornerOf(block, node[2], x, roomX[2])};
-        const Components moving[] = {cornerOf(block, node[0], u, roomU[0]), cornerOf(block, node[1], u, roomU[1]),
-                                     cornerOf(block, node[2], u, roomU[2])};
+        for (int k = 0; k < 3; ++k) node[k] = order.node[k].data() + block.begin;
+        const Components at[] = {cornerOf(block, node[0], job.x, roomX[0]), cornerOf(block, node[1], job.x, roomX[1]),
+                                 cornerOf(block, node[2], job.x, roomX[2])};
+        const Components moving[] = {cornerOf(block, node[0], job.u, roomU[0]),
+                                     cornerOf(block, node[1], job.u, roomU[1]),
+                                     cornerOf(block, node[2], job.u, roomU[2])};
         compute(block.paddedCount(), at, moving, added);
         for (int k = 0; k < 3; ++k) {
             clearPadding(block, added[k]);
-            if (block.run) {
-                double* const target = to.values + (node[k][0] - to.first);
-                const int padded = block.paddedCount();
-#pragma GCC ivdep
-                for (int e = 0; e < padded; ++e) target[e] += added[k][e];
-            } else {
-                for (int e = 0; e < block.count(); ++e) to.values[node[k][e] - to.first] += added[k][e];
-            }
+            addWeights(block, added[k], node[k], job.viscous);
         }
     }
+}
+
+} // namespace
+
+void DragForce::arrange(const Partition& partition) {
+    std::vector<std::array<int, 3>> corners;
+    corners.reserve(triangles_->size());
+    for (const Eigen::Vector3i& t : *triangles_) {
+        corners.push_back({t[0], t[1], t[2]});
+        std::sort(corners.back().begin(), corners.back().end());
+    }
+    order_ = membrane::arrange<3>(corners, partition);
+}
+
+GroupEnergy DragForce::add(int group, const GroupJob& job) {
+    addDragWeights(order_, group, job);
+    return {};
+}
+
+double DragForce::viscosity() const {
+    return dragFactor(airDensity_);
+}
+
+void DragForce::addTo(LinearForces& to, const Points& x, const Points& v) const {
+    forCorners(x, [&](int node, const Eigen::Vector3d& area) {
+        to.addDrag(node, cornerDragSlope(airDensity_, area, v[node]));
+    });
+}
+
+Culprit DragForce::culprit(const Moment& moment, bool) const {
+    std::vector<double> weights(moment.x.size(), 0.);
+    forCorners(moment.x, [&](int node, const Eigen::Vector3d& area) {
+        weights[node] += dragWeight(area, moment.v[node]);
+    });
+    Culprit most;
+    for (std::size_t i = 0; i < weights.size(); ++i)
+        most.consider(-nodeDrag(viscosity(), weights[i], moment.v[i]).dot(moment.v[i]), "node", {static_cast<int>(i)});
+    return most;
 }
 
 } // namespace membrane

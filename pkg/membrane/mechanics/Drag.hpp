@@ -6,28 +6,38 @@
 
 namespace membrane {
 
+/// Twice the area of a triangle times its normal [m²], from its corners [m].
+inline Eigen::Vector3d doubleArea(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+    return (b - a).cross(c - a);
+}
+
 /// What one triangle adds to the drag weight of a corner [m³/s]: |a·V|, a = 2S times the unit normal, V the corner's
 /// velocity. \param doubleArea a [m²];  \param velocity V [m/s]
 inline double dragWeight(const Eigen::Vector3d& doubleArea, const Eigen::Vector3d& velocity) {
     return std::abs(doubleArea.dot(velocity));
 }
 
+/// By which a node's drag weight is multiplied [kg/m³]: rho/12, \param airDensity rho [kg/m³] >= 0.
+inline double dragFactor(double airDensity) {
+    return airDensity / 12.;
+}
+
 /// Air drag [N] on a node, paper equation (10) summed over its triangles: rho S_n V²/6 each, against the velocity V,
 /// S_n the area of the triangle projected along V: S_n V² = |a·V| |V| / 2.
-/// \param airDensity rho [kg/m³] >= 0;  \param weight sum of dragWeight() [m³/s]
-inline Eigen::Vector3d nodeDrag(double airDensity, double weight, const Eigen::Vector3d& velocity) {
-    return -(airDensity / 12.) * weight * velocity;
+/// \param factor dragFactor();  \param weight sum of dragWeight() [m³/s]
+inline Eigen::Vector3d nodeDrag(double factor, double weight, const Eigen::Vector3d& velocity) {
+    return -factor * weight * velocity;
 }
 
 /// Air drag [N] on one corner of one triangle.
 inline Eigen::Vector3d cornerDrag(double airDensity, const Eigen::Vector3d& doubleArea,
                                   const Eigen::Vector3d& velocity) {
-    return nodeDrag(airDensity, dragWeight(doubleArea, velocity), velocity);
+    return nodeDrag(dragFactor(airDensity), dragWeight(doubleArea, velocity), velocity);
 }
 
 /// Bound [N s/m] of the slope of cornerDrag() by the velocity, in any direction.
 inline double cornerDragSlope(double airDensity, const Eigen::Vector3d& doubleArea, const Eigen::Vector3d& velocity) {
-    return (airDensity / 12.) * (std::abs(doubleArea.dot(velocity)) + doubleArea.norm() * velocity.norm());
+    return dragFactor(airDensity) * (std::abs(doubleArea.dot(velocity)) + doubleArea.norm() * velocity.norm());
 }
 
 } // namespace membrane
