@@ -24,8 +24,8 @@ OF_BODIES = {
     "state.inertia": "Vector3r",
     "state.mass": "Real",
     "state.blockedDOFs": "string",
-    "state": "shared_ptr<State>",
-    "shape": "shared_ptr<Shape>",
+    "state": "another",  # YADE dies of a body without, and of a shape without functors
+    "shape": "another",
     "mat": "shared_ptr<FrictMat>",
     "mask": "int",
     "bounded": "bool",

@@ -231,7 +231,10 @@ def attack_a_body(world, _, __, chance, tell):
     tell(f"{place} of #{body.id}")
     if place == "erase":
         return None, attempt(lambda: O.bodies.erase(body.id))
-    value = chance.choice(values(kind, None, list(world.objects.values())))
+    if kind == "another":
+        value = type(getattr(body, place))()
+    else:
+        value = chance.choice(values(kind, None, list(world.objects.values())))
     tell(brief(value))
     holder, _, member = place.rpartition(".")
     return None, attempt(lambda: setattr(body.state if holder else body, member, value))
