@@ -20,9 +20,13 @@ from membrane.output import read_history
 from membrane.parameters import SailParameters
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+from yade import config
 from yade import wrapper as yade
 
 ROOT = Path(__file__).resolve().parents[1]
+# YADE was built with pkg/membrane in its source tree: the classes are its own.
+NATIVE = (Path(config.libDir) / "libpkg_membrane.so").exists()
+VIEW = hasattr(yade, "GlExtraDrawer")
 FULL = "MEMBRANE_FULL_TESTS"
 O = yade.Omega()  # noqa: E741, YADE's own name for it
 
@@ -30,6 +34,16 @@ O = yade.Omega()  # noqa: E741, YADE's own name for it
 def long(test):
     """Mark a test, or a class of tests, that runs only with --full."""
     return unittest.skipUnless(os.environ.get(FULL), "long; run with --full")(test)
+
+
+def of_the_plugin(test):
+    """Mark a test, or a class of tests, of the extension module, which a YADE tree does without."""
+    return unittest.skipIf(NATIVE, "the classes are native")(test)
+
+
+def of_the_view(test):
+    """Mark a test, or a class of tests, of YADE's 3D view, without which a YADE may be built."""
+    return unittest.skipUnless(VIEW, "YADE was built without its 3D view")(test)
 
 
 class SceneTest(unittest.TestCase):
@@ -413,12 +427,12 @@ def yade_environment():
     return {**os.environ, "PYTHONPATH": path, "MPLBACKEND": "Agg"}
 
 
-def run_yade(script, *arguments, threads=1, folder=None):
+def run_yade(script, *arguments, threads=1, folder=None, environment=None):
     """Run `yade -n -x` on a script in `folder`; returns the CompletedProcess, output as text."""
     return subprocess.run(
         ["yade", "-n", "-x", f"-j{threads}", str(script), *map(str, arguments)],
         cwd=folder or scratch(),
-        env=yade_environment(),
+        env=environment or yade_environment(),
         capture_output=True,
         text=True,
         timeout=600,

@@ -7,7 +7,7 @@ import unittest
 import membrane
 import numpy as np
 from membrane import _load, scene
-from support import O, SceneTest, Sheet, grid, interaction_loop
+from support import VIEW, O, SceneTest, Sheet, grid, interaction_loop
 from yade import system
 from yade import wrapper as yade
 from yade.minieigenHP import Vector3
@@ -52,6 +52,8 @@ SETTINGS = {
     "MembraneFault": {"dead": True},
     "GlExtra_Membrane": {"strainRange": 1e-4, "wire": True, "dead": True},
 }
+if not VIEW:
+    del BASES["GlExtra_Membrane"]
 NUMBERS = ("Real", "Vector3r", "vector<Real>", "vector<Vector3r>")
 
 

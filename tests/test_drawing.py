@@ -13,7 +13,7 @@ import membrane
 import numpy as np
 from matplotlib.image import imread
 from membrane import window
-from support import ROOT, SceneTest, run_yade, scratch, yade_environment
+from support import ROOT, SceneTest, of_the_view, run_yade, scratch, yade_environment
 
 BACKGROUND = 0.2  # grey, of YADE's window
 WATCHDOG = 600  # s, after which a window that hangs is killed
@@ -98,6 +98,7 @@ def brightness(colour):
     return np.dot(colour, (0.2126, 0.7152, 0.0722))
 
 
+@of_the_view
 class TestPictures(unittest.TestCase):
     two_pixels = 2 / 600  # m
 
@@ -235,6 +236,7 @@ class TestPictures(unittest.TestCase):
 
 
 class TestWithoutDisplay(SceneTest):
+    @of_the_view
     def test_drawer_exists_and_refuses_a_bad_range(self):
         self.assertEqual(membrane.GlExtra_Membrane(strainRange=1e-5).strainRange, 1e-5)
         for bad in (-1e-9, float("nan"), float("inf")):

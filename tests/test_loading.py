@@ -9,7 +9,7 @@ from pathlib import Path
 import membrane
 import yade.config
 from membrane import _load
-from support import run_yade, scratch
+from support import of_the_plugin, run_yade, scratch
 from yade import wrapper
 
 TABLES = tuple(
@@ -71,6 +71,7 @@ def wrong(value):
     return value + "x" if isinstance(value, str) else value + 1
 
 
+@of_the_plugin
 class TestLayout(unittest.TestCase):
     def setUp(self):
         self.native = sys.modules.get("membrane._membrane")
@@ -139,7 +140,7 @@ class TestVersion(unittest.TestCase):
         setattr(yade.config, name, value)
         try:
             with self.assertRaises(ImportError) as caught:
-                _load.load()
+                _load._check_version()
         finally:
             setattr(yade.config, name, kept)
         text = str(caught.exception)

@@ -11,10 +11,10 @@ YADE_PLUGIN((MembraneFault));
 
 namespace {
 
-std::mutex guard;
+std::mutex noting;
 
 /// The fault that waits for the next step, or none.
-shared_ptr<MembraneFault> waiting(const Scene& scene) {
+shared_ptr<MembraneFault> waitingFault(const Scene& scene) {
     return scene._nextEngines.empty() ? shared_ptr<MembraneFault>()
                                       : boost::dynamic_pointer_cast<MembraneFault>(scene._nextEngines.front());
 }
@@ -22,8 +22,8 @@ shared_ptr<MembraneFault> waiting(const Scene& scene) {
 } // namespace
 
 void MembraneFault::note(Scene& scene, const std::string& what) {
-    const std::lock_guard<std::mutex> lock(guard);
-    shared_ptr<MembraneFault> fault = waiting(scene);
+    const std::lock_guard<std::mutex> lock(noting);
+    shared_ptr<MembraneFault> fault = waitingFault(scene);
     if (!fault) {
         fault = shared_ptr<MembraneFault>(new MembraneFault);
         fault->message = what;
@@ -34,7 +34,7 @@ void MembraneFault::note(Scene& scene, const std::string& what) {
 }
 
 void MembraneFault::raise(Scene& scene) {
-    const shared_ptr<MembraneFault> fault = waiting(scene);
+    const shared_ptr<MembraneFault> fault = waitingFault(scene);
     if (!fault) return;
     scene._nextEngines.erase(scene._nextEngines.begin());
     fault->stop();

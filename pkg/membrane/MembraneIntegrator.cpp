@@ -10,7 +10,9 @@
 #include <core/BodyContainer.hpp>
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
+#ifdef _OPENMP // a YADE tree may be built without
 #include <omp.h>
+#endif
 
 namespace yade {
 
@@ -20,6 +22,15 @@ namespace {
 
 /// A thread with fewer nodes than this costs more time than it saves.
 constexpr int nodesOfThread = 4096;
+
+/// How many threads YADE was started with.
+int mostThreads() {
+#ifdef _OPENMP
+    return omp_get_max_threads();
+#else
+    return 1;
+#endif
+}
 
 constexpr int maskByDefault = 1;
 
@@ -131,7 +142,7 @@ int MembraneIntegrator::wantedParts() const {
         throw std::runtime_error("MembraneIntegrator: ompThreads = " + std::to_string(ompThreads) +
                                  " must be <= " + std::to_string(most));
     if (ompThreads > 0) return std::min(ompThreads, static_cast<int>(states_.size()));
-    return std::min(omp_get_max_threads(), std::max(1, static_cast<int>(states_.size()) / nodesOfThread));
+    return std::min(mostThreads(), std::max(1, static_cast<int>(states_.size()) / nodesOfThread));
 }
 
 /// The integrator and the field that count in this step.

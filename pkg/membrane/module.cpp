@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The Python extension module `_membrane`: registers the plugin's classes with a YADE that is running already.
-// Built into a YADE tree, the classes are native and this module is never imported.
+// In a YADE tree the classes are native: nothing of this is compiled there.
+#ifdef MEMBRANE_MODULE
 #include "Membrane.hpp"
 #include <core/BodyContainer.hpp>
 #include <core/Engine.hpp>
@@ -127,3 +128,4 @@ BOOST_PYTHON_MODULE(_membrane) {
     py::def("fields_of_scene", fieldsOfScene);
     py::def("write_state", writeState);
 }
+#endif

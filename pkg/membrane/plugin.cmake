@@ -30,6 +30,7 @@ if(MEMBRANE_SANITIZE)
 endif()
 target_include_directories(membrane_plugin SYSTEM PRIVATE ${Boost_INCLUDE_DIRS} ${Python3_INCLUDE_DIRS}
                            ${GLUT_INCLUDE_DIR})
+target_compile_definitions(membrane_plugin PRIVATE MEMBRANE_MODULE) # module.cpp, which a YADE tree leaves out
 
 # The macros that shape YADE's classes, as its package was built.
 target_compile_definitions(membrane_plugin PRIVATE YADE_OPENMP YADE_MPI YADE_OPENGL YADE_FEM YADE_REAL_BIT=64)
@@ -52,7 +53,8 @@ add_library(_membrane MODULE)
 target_link_libraries(_membrane PRIVATE membrane_plugin)
 set_target_properties(_membrane PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${python_dir}/membrane)
 
-# Symbol check: the same objects linked once with nothing left undefined. Neither installed nor ever loaded.
+# Symbol check: the same objects linked once with nothing left undefined, under the name that a YADE tree would give
+# them. Not installed; a test loads it as YADE loads libraries of its own.
 set(lib_dir /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE})
 set(python_version ${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR})
 set(symbol_sources
@@ -81,8 +83,31 @@ else()
     add_library(membrane_symbols SHARED)
     target_link_libraries(membrane_symbols PRIVATE membrane_plugin ${symbol_sources})
     target_link_options(membrane_symbols PRIVATE -Wl,--no-undefined)
-    set_target_properties(membrane_symbols PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/symbol-check)
+    set_target_properties(membrane_symbols PROPERTIES OUTPUT_NAME pkg_membrane
+                          LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/symbol-check)
 endif()
+
+# ---------------------------------------------------------------------------------------------------------------------
+# All sources in one, in either order, as a unity build of a YADE tree puts them together: read only, with the warnings
+# that are errors there, and once with all that a tree may lack. A test builds it.
+
+add_library(membrane_unity OBJECT EXCLUDE_FROM_ALL)
+target_link_libraries(membrane_unity PRIVATE membrane_mechanics)
+target_include_directories(membrane_unity SYSTEM PRIVATE $<TARGET_PROPERTY:membrane_plugin,INCLUDE_DIRECTORIES>)
+target_compile_definitions(membrane_unity PRIVATE $<TARGET_PROPERTY:membrane_plugin,COMPILE_DEFINITIONS>)
+target_compile_options(membrane_unity PRIVATE -fsyntax-only -UMEMBRANE_MODULE -Wformat-nonliteral -Wfloat-conversion
+                       -Wcast-align -Wpointer-arith -Wwrite-strings -Wnon-virtual-dtor -Wsuggest-override
+                       -Wswitch-default)
+set(unity_sources ${plugin_sources} ${mechanics_sources})
+foreach(order ASCENDING DESCENDING)
+    list(SORT unity_sources ORDER ${order})
+    list(TRANSFORM unity_sources REPLACE ".+" "#include \"\\0\"\n" OUTPUT_VARIABLE includes)
+    list(JOIN includes "" includes)
+    file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/unity/${order}.cpp CONTENT "${includes}")
+    target_sources(membrane_unity PRIVATE ${PROJECT_BINARY_DIR}/unity/${order}.cpp)
+endforeach()
+set_source_files_properties(${PROJECT_BINARY_DIR}/unity/DESCENDING.cpp PROPERTIES COMPILE_OPTIONS
+                            "-UYADE_OPENGL;-UYADE_OPENMP;-fno-openmp")
 
 # ---------------------------------------------------------------------------------------------------------------------
 # The Python package, complete in build/python, so that PYTHONPATH=build/python serves.

@@ -34,6 +34,8 @@ DRAWERS = ("GlExtra_Membrane",)  # only where YADE has its 3D view
 def load():
     """Give the plugin's classes by name; load and register them first if YADE has them not.
 
+    A YADE built with them in its source tree has them, whatever its version.
+
     Raises
     ------
     ImportError
@@ -41,13 +43,19 @@ def load():
     """
     wrapper = _running_yade()
     names = CLASSES + (DRAWERS if hasattr(wrapper, "GlExtraDrawer") else ())
-    if not all(hasattr(wrapper, name) for name in names):
+    missing = [name for name in names if not hasattr(wrapper, name)]
+    if 0 < len(missing) < len(names):
+        raise ImportError(
+            f"membrane: this YADE was built with another pkg/membrane, without {', '.join(missing)}"
+        )
+    if missing:
+        _check_version()
         native = importlib.import_module("._membrane", __package__)
         check_layout(native, wrapper)
         native.register_classes(list(names))
         _let_others_know(native, wrapper)
-        for alias, name in ALIASES.items():
-            setattr(wrapper, alias, getattr(wrapper, name))
+    for alias, name in ALIASES.items():
+        setattr(wrapper, alias, getattr(wrapper, name))
     return {name: getattr(wrapper, name) for name in names}
 
 
@@ -63,9 +71,14 @@ def _let_others_know(native, wrapper):
 
 
 def _running_yade():
-    """Return module yade.wrapper of the YADE that runs this script, if it is the right one."""
+    """Return module yade.wrapper of the YADE that runs this script."""
     if "yade.wrapper" not in sys.modules:
         raise ImportError("membrane: no YADE is running; run this script by 'yade script.py'")
+    return sys.modules["yade.wrapper"]
+
+
+def _check_version():
+    """Raise ImportError unless the YADE that runs is the one that the module was built for."""
     config = sys.modules["yade.config"] if "yade.config" in sys.modules else None
     config = config or importlib.import_module("yade.config")
     found = (config.version.strip(), config.highPrecisionName)
@@ -74,7 +87,6 @@ def _running_yade():
             f"membrane: built for YADE {YADE_VERSION} ({PRECISION}), "
             f"but this is YADE {found[0]} ({found[1]})"
         )
-    return sys.modules["yade.wrapper"]
 
 
 def check_layout(native, wrapper):

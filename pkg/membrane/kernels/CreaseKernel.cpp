@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "CreaseKernel.hpp"
+#include "MathFlags.hpp" // like a CREATE_CPP_LOCAL_LOGGER it keeps this out of unity builds
+
 #include "BlockTransfer.hpp"
+#include "CreaseKernel.hpp"
 
 namespace membrane {
 namespace {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "LeapfrogKernel.hpp"
+#include "MathFlags.hpp" // like a CREATE_CPP_LOCAL_LOGGER it keeps this out of unity builds
+
 #include "../mechanics/Drag.hpp"
 #include "../mechanics/LocalDamping.hpp"
 #include "BlockTransfer.hpp"
+#include "LeapfrogKernel.hpp"
 
 namespace membrane {
 namespace {
@@ -17,7 +19,9 @@ struct Passing {
 
 inline double sumOf(const double* values, int count) {
     double sum = 0.;
+#ifdef _OPENMP
 #pragma omp simd reduction(+ : sum)
+#endif
     for (int e = 0; e < count; ++e) sum += values[e];
     return sum;
 }
@@ -121,7 +125,9 @@ inline double move(int begin, int end, const Motion& m, MotionSums& total) {
         if (wanted != Sums::none) gatherOwn(first, last, m, passing);
         moveBlock<drag, local, wanted>(first, last, m, passing);
         const double *const x = m.x.x, *const y = m.x.y, *const z = m.x.z;
+#ifdef _OPENMP // a YADE tree may be built without
 #pragma omp simd reduction(+ : lost)
+#endif
         for (int i = first; i < last; ++i) lost += 0. * (x[i] + y[i] + z[i]);
         if (wanted != Sums::none) addUp<drag, wanted>(first, last, m, passing, total);
     }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "SideKernel.hpp"
+#include "MathFlags.hpp" // like a CREATE_CPP_LOCAL_LOGGER it keeps this out of unity builds
+
 #include "../mechanics/Damping.hpp"
 #include "../mechanics/SideForce.hpp"
 #include "BlockTransfer.hpp"
+#include "SideKernel.hpp"
 #include <cmath>
 
 namespace membrane {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "Sweep.hpp"
 #include "../mechanics/Drag.hpp"
+#ifdef _OPENMP // a YADE tree may be built without
 #include <omp.h>
+#endif
 #include <stdexcept>
 
 namespace membrane {
@@ -218,12 +220,17 @@ bool Sweep::step(const SweepStep& now) {
         partSums_[0] = {};
         sweepPart(0, now);
     } else {
+#ifdef _OPENMP
 #pragma omp parallel num_threads(std::min(parts, omp_get_num_procs()))
         {
             for (int p = omp_get_thread_num(); p < parts; p += omp_get_num_threads()) computeBorder(p, now);
 #pragma omp barrier
             for (int p = omp_get_thread_num(); p < parts; p += omp_get_num_threads()) sweepPart(p, now);
         }
+#else
+        for (int p = 0; p < parts; ++p) computeBorder(p, now);
+        for (int p = 0; p < parts; ++p) sweepPart(p, now);
+#endif
     }
     motion_ = {};
     energy_ = {};

@@ -8,10 +8,12 @@
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) &&               \
     !defined(__SANITIZE_THREAD__)
 #define MEMBRANE_VECTORISED __attribute__((flatten, target_clones("avx2", "default")))
+// What sets errno is not vectorised, and the flags of MathFlags.hpp do not tell the compiler that these need not.
+extern "C" __attribute__((const)) double sqrt(double) noexcept;
 // The C library's vectors of atan2: see crease kernel.
 #include <features.h>
 #if __GLIBC_PREREQ(2, 35)
-extern "C" __attribute__((simd("notinbranch"))) double atan2(double, double) noexcept;
+extern "C" __attribute__((const, simd("notinbranch"))) double atan2(double, double) noexcept;
 #endif
 #else
 #define MEMBRANE_VECTORISED

@@ -7,7 +7,7 @@ namespace membrane {
 namespace {
 
 /// A symmetric positive 3 x 3 matrix.
-struct Block {
+struct Symmetric {
     double xx = 0., yy = 0., zz = 0., xy = 0., yz = 0., zx = 0.;
 
     /// += factor v v^T
@@ -25,8 +25,8 @@ struct Block {
         yy += factor;
         zz += factor;
     }
-    Block timesItself() const {
-        Block s;
+    Symmetric timesItself() const {
+        Symmetric s;
         s.xx = xx * xx + xy * xy + zx * zx;
         s.yy = xy * xy + yy * yy + yz * yz;
         s.zz = zx * zx + yz * yz + zz * zz;
@@ -40,7 +40,7 @@ struct Block {
         const double trace = xx + yy + zz;
         if (!(trace > 0.)) return 0.;
         const double f = 1. / trace; // so that no power overflows or vanishes
-        Block power{f * xx, f * yy, f * zz, f * xy, f * yz, f * zx};
+        Symmetric power{f * xx, f * yy, f * zz, f * xy, f * yz, f * zx};
         for (int doubling = 0; doubling < 4; ++doubling) power = power.timesItself();
         double root = power.xx + power.yy + power.zz;
         for (int halving = 0; halving < 4; ++halving) root = std::sqrt(root);
@@ -69,7 +69,7 @@ struct Corners {
 /// Norms of the blocks on the diagonal.
 Rows ownNorms(const LinearForces& forces) {
     const std::size_t n = forces.inverseRoot.size();
-    std::vector<Block> k(n), c(forces.damped ? n : 0);
+    std::vector<Symmetric> k(n), c(forces.damped ? n : 0);
     for (const TautSide& s : forces.sides) {
         for (const int node : {s.a, s.b}) {
             k[node].addDyad(s.axial - s.lateral, s.direction);
