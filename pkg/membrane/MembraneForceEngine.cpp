@@ -381,7 +381,7 @@ void MembraneForceEngine::computeForces() {
     if (const FreeHub* hub = this->hub(in)) hub->addTo(masses);
     ::membrane::LinearForces all(masses);
     for (const auto& force : makeForces(bodies, in)) force->addTo(all, x, v);
-    all.ground = contacts.ground;
+    for (std::size_t i = 0; i < contacts.ground.size(); ++i) all.addGround(static_cast<int>(i), contacts.ground[i]);
     all.beside = contacts.fastest;
     return all;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MathFlags.hpp" // like a CREATE_CPP_LOCAL_LOGGER it keeps this out of unity builds
 
-#include "BlockTransfer.hpp"
+#include "../mechanics/Drag.hpp"
 #include "DragKernel.hpp"
 
 namespace membrane {
@@ -36,32 +36,16 @@ MEMBRANE_VECTORISED void addDragWeights(const Arrangement<3>& order, int group, 
     double added[3][blockSize];
     for (int i = order.groups[group]; i < order.groups[group + 1]; ++i) {
         const Block block = order.blocks[i];
-        const int* node[3];
-        for (int k = 0; k < 3; ++k) node[k] = order.node[k].data() + block.begin;
-        const Components at[] = {cornerOf(block, node[0], job.x, roomX[0]), cornerOf(block, node[1], job.x, roomX[1]),
-                                 cornerOf(block, node[2], job.x, roomX[2])};
-        const Components moving[] = {cornerOf(block, node[0], job.u, roomU[0]),
-                                     cornerOf(block, node[1], job.u, roomU[1]),
-                                     cornerOf(block, node[2], job.u, roomU[2])};
-        compute(block.paddedCount(), at, moving, added);
+        const Corners x(order, block, job.x, roomX), u(order, block, job.u, roomU);
+        compute(block.paddedCount(), x.at, u.at, added);
         for (int k = 0; k < 3; ++k) {
             clearPadding(block, added[k]);
-            addWeights(block, added[k], node[k], job.viscous);
+            addWeights(block, added[k], x.node[k], job.viscous);
         }
     }
 }
 
 } // namespace
-
-void DragForce::arrange(const Partition& partition) {
-    std::vector<std::array<int, 3>> corners;
-    corners.reserve(triangles_->size());
-    for (const Eigen::Vector3i& t : *triangles_) {
-        corners.push_back({t[0], t[1], t[2]});
-        std::sort(corners.back().begin(), corners.back().end());
-    }
-    order_ = membrane::arrange<3>(corners, partition);
-}
 
 GroupEnergy DragForce::add(int group, const GroupJob& job) {
     addDragWeights(order_, group, job);
@@ -73,15 +57,16 @@ double DragForce::viscosity() const {
 }
 
 void DragForce::addTo(LinearForces& to, const Points& x, const Points& v) const {
-    forCorners(x, [&](int node, const Eigen::Vector3d& area) {
-        to.addDrag(node, cornerDragSlope(airDensity_, area, v[node]));
+    forTriangles(x, [&](const Eigen::Vector3i& triangle, const Eigen::Vector3d& area) {
+        for (const int node : {triangle[0], triangle[1], triangle[2]})
+            to.addDrag(node, cornerDragSlope(airDensity_, area, v[node]));
     });
 }
 
 Culprit DragForce::culprit(const Moment& moment, bool) const {
     std::vector<double> weights(moment.x.size(), 0.);
-    forCorners(moment.x, [&](int node, const Eigen::Vector3d& area) {
-        weights[node] += dragWeight(area, moment.v[node]);
+    forTriangles(moment.x, [&](const Eigen::Vector3i& triangle, const Eigen::Vector3d& area) {
+        for (const int node : {triangle[0], triangle[1], triangle[2]}) weights[node] += dragWeight(area, moment.v[node]);
     });
     Culprit most;
     for (std::size_t i = 0; i < weights.size(); ++i)

@@ -6,11 +6,6 @@
 
 namespace membrane {
 
-/// Twice the area of a triangle times its normal [m²], from its corners [m].
-inline Eigen::Vector3d doubleArea(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
-    return (b - a).cross(c - a);
-}
-
 /// What one triangle adds to the drag weight of a corner [m³/s]: |a·V|, a = 2S times the unit normal, V the corner's
 /// velocity. \param doubleArea a [m²];  \param velocity V [m/s]
 inline double dragWeight(const Eigen::Vector3d& doubleArea, const Eigen::Vector3d& velocity) {

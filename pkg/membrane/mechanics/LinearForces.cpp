@@ -71,6 +71,11 @@ void LinearForces::addDrag(int node, double slope) {
     damped = damped || slope > 0.;
 }
 
+void LinearForces::addGround(int node, double stiffness) {
+    ground.resize(inverseRoot.size());
+    ground[node] += stiffness;
+}
+
 void addProduct(const LinearForces& forces, double k, double c, const NodeVectors& x, NodeVectors& y) {
     const TautSide* side = forces.sides.data();
     const TautSide* const end = side + forces.sides.size();

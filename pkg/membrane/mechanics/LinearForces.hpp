@@ -41,6 +41,8 @@ struct LinearForces {
     void addSide(const TautSide& side);
     /// \param slope [N s/m]
     void addDrag(int node, double slope);
+    /// \param stiffness [N/m]
+    void addGround(int node, double stiffness);
 };
 
 /// A side at the present places of its nodes [m]. \param damping c [N s/m]
