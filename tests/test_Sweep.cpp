@@ -283,8 +283,10 @@ TEST(Sweep, ForcesAreThoseOfPlainLoops) {
                     ASSERT_TRUE(sweep.step(still(true))) << times;
                     EXPECT_LT(difference(total, [&](int i) { return sweep.force(i); }), 1e-12);
                     EXPECT_LT(difference(plain.elastic, [&](int i) { return sweep.elasticForce(i); }), 1e-12);
-                    EXPECT_LT(difference(plain.damping, [&](int i) { return sweep.channelForce(dampingChannel, i); }), 1e-12);
-                    EXPECT_LT(difference(plain.crease, [&](int i) { return sweep.channelForce(creaseChannel, i); }), 1e-12);
+                    EXPECT_LT(difference(plain.damping, [&](int i) { return sweep.channelForce(dampingChannel, i); }),
+                              1e-12);
+                    EXPECT_LT(difference(plain.crease, [&](int i) { return sweep.channelForce(creaseChannel, i); }),
+                              1e-12);
                     EXPECT_LT(difference(plain.drag, [&](int i) { return sweep.channelForce(dragChannel, i); }), 1e-12);
                 }
             }
@@ -596,7 +598,8 @@ TEST(Sweep, SidesThatDifferABitMoreKeepTheirOwnConstants) {
         Sweep sweep = m.sweep();
         sweep.step(still(true));
         EXPECT_LT(difference(plain.elastic, [&](int i) { return sweep.elasticForce(i); }), 1e-12) << which;
-        EXPECT_LT(difference(plain.damping, [&](int i) { return sweep.channelForce(dampingChannel, i); }), 1e-12) << which;
+        EXPECT_LT(difference(plain.damping, [&](int i) { return sweep.channelForce(dampingChannel, i); }), 1e-12)
+            << which;
     }
 }
 

@@ -106,9 +106,7 @@ class TestRun(SceneTest):
             net, made, _ = self.sail(path)
             scene.advance(400)
             time, mass, force = O.time, sum(net.masses), -net.area
-            fallen = np.average(
-                [O.bodies[i].state.pos[2] for i in net.bodyIds], weights=net.masses
-            )
+            fallen = np.average([O.bodies[i].state.pos[2] for i in net.bodyIds], weights=net.masses)
             self.assertAlmostEqual(fallen / (force / mass * time**2 / 2), 1, delta=0.01)
             work = made.ledger.workOf("sunlight")
             self.assertGreater(work, 0)

@@ -15,7 +15,8 @@ void MembraneForce::action() {
         const auto* forces = dynamic_cast<const MembraneForceEngine*>(engine.get());
         if (forces && !forces->dead && forces->membrane == membrane) return;
     }
-    throw std::runtime_error(getClassName() + ": no MembraneForceEngine of its membrane is in O.engines, or it is dead");
+    throw std::runtime_error(getClassName() +
+                             ": no MembraneForceEngine of its membrane is in O.engines, or it is dead");
 }
 
 std::shared_ptr<::membrane::ElementForce> MembraneForce::make() const {

@@ -493,8 +493,7 @@ vector<Real> MembraneForceEngine::creaseAngles(const boost::python::object& at) 
     const ::membrane::Points x =
         given().positions(*Omega::instance().getScene(), pointsFrom(at, "MembraneForceEngine.creaseAngles: positions"));
     vector<Real> angles;
-    for (const ::membrane::Crease& c : membrane->rest().creases)
-        angles.push_back(::membrane::creaseState(c, x).theta);
+    for (const ::membrane::Crease& c : membrane->rest().creases) angles.push_back(::membrane::creaseState(c, x).theta);
     return angles;
 }
 

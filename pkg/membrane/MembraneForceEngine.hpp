@@ -164,8 +164,8 @@ private:
     std::size_t bodyCount_ = 0; ///< of the scene, when clumps were last looked for
     long lastStep_ = -1;        ///< in which the forces were computed; -1: none yet
     Real checkedStep_ = -1.;
-    Real checkedContacts_ = 0.; ///< ContactStiffness::fastest with which O.dt was checked
-    bool keepMemory_ = false;   ///< the sweep's memory is that of the ledger's last step
+    Real checkedContacts_ = 0.;                 ///< ContactStiffness::fastest with which O.dt was checked
+    bool keepMemory_ = false;                   ///< the sweep's memory is that of the ledger's last step
     vector<shared_ptr<MembraneForce>> further_; ///< for which it is prepared
     vector<NodeContact> contacts_;
     vector<const Body*> left_;                     ///< bodies of the nodes that NewtonIntegrator may move

@@ -18,10 +18,16 @@ namespace {
 /// energies wanted in the next one: a run that goes wrong may do so within a few steps.
 constexpr Real restlessShare = 1e-3;
 
-/// Of doneWorks; those of further forces follow.
-enum Entry : std::size_t { creaseEntry, dampingEntry, dragEntry, drivenEntry, otherEntry, impulseEntry, furtherEntries };
-static_assert(creaseEntry == ::membrane::creaseChannel && dampingEntry == ::membrane::dampingChannel &&
-              dragEntry == ::membrane::dragChannel);
+/// Of doneWorks: first the usual channels, as the sweep numbers them; last those of further forces.
+enum WorkEntry : std::size_t {
+    creaseEntry = ::membrane::creaseChannel,
+    dampingEntry = ::membrane::dampingChannel,
+    dragEntry = ::membrane::dragChannel,
+    drivenEntry,
+    otherEntry,
+    impulseEntry,
+    furtherEntries
+};
 
 /// A vector turned about -z by `angle` [rad]: the chord of a driven node's step before, from that of this step.
 Vector3r turnedBack(const Vector3r& v, Real angle) {

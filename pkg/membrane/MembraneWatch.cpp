@@ -47,10 +47,10 @@ string elementText(const ::membrane::Culprit& culprit, const Membrane& membrane)
 /// What may give energy from nowhere.
 struct MembraneWatch::Part {
     const char* title;
-    Real gave;                              ///< [J]
-    const ::membrane::ElementForce* force;  ///< whose elements to blame; null: contacts
-    bool elastic = false;                   ///< its strain energy, and not what its channel gave
-    bool known = true;                      ///< whether it was looked at in this step
+    Real gave;                             ///< [J]
+    const ::membrane::ElementForce* force; ///< whose elements to blame; null: contacts
+    bool elastic = false;                  ///< its strain energy, and not what its channel gave
+    bool known = true;                     ///< whether it was looked at in this step
 };
 
 void MembraneWatch::postLoad(MembraneWatch&) {

@@ -16,7 +16,7 @@ public:
     // clang-format off
     YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(SolarPressure, MembraneForce,
         "Pressure of sunlight on the triangles of a :yref:`Membrane`, which has the same two sides and throws no shadow on itself. Its work is booked as 'sunlight'.",
-        ((Vector3r, direction, Vector3r(0., 0., -1.), Attr::triggerPostLoad, "Along which the light travels, of any length > 0."))
+        ((Vector3r, direction, Vector3r(0., 0., -1.), Attr::triggerPostLoad, "Along which the light travels [-], of any length > 0."))
         ((Real, pressure, 4.54e-6, Attr::triggerPostLoad, "On a black plate across the light [Pa], >= 0; the default is that at the Earth's distance from the sun."))
         ((Real, specular, 0., Attr::triggerPostLoad, "Share reflected as by a mirror [-], >= 0."))
         ((Real, diffuse, 0., Attr::triggerPostLoad, "Share reflected diffusely [-], >= 0; together with `specular` <= 1, the rest is absorbed."))
@@ -27,31 +27,30 @@ public:
 };
 REGISTER_SERIALIZABLE(SolarPressure);
 
-YADE_PLUGIN((SolarPressure));
+} // namespace yade
 
+namespace membrane {
 namespace {
-
-using namespace ::membrane;
 
 MEMBRANE_VECTORISED void addSunlight(const Sunlight& light, const Arrangement<3>& order, int group,
                                      const GroupJob& job) {
     BlockVectors room[3], third;
     for (int i = order.groups[group]; i < order.groups[group + 1]; ++i) {
         const Block block = order.blocks[i];
-        const Corners x(order, block, job.x, room);
+        const OfCorners x = ofCorners(order, block, job.x, room);
         const int padded = block.paddedCount();
         const Components force = third.components();
 #pragma GCC ivdep
         for (int e = 0; e < padded; ++e)
-            force.set(e, 1. / 3. * solarForce(light, doubleArea(x.at[0].at(e), x.at[1].at(e), x.at[2].at(e))));
+            force.set(e, 1. / 3. * solarForce(light, doubleArea(x.a.at(e), x.b.at(e), x.c.at(e))));
         clearPadding(block, third);
-        for (int k = 0; k < 3; ++k) addCorner(block, third, x.node[k], job.own);
+        for (int k = 0; k < 3; ++k) addCorner(block, third, order.node[k].data() + block.begin, job.own);
     }
 }
 
 class SolarForce : public TriangleForce {
 public:
-    explicit SolarForce(const shared_ptr<const SolarPressure>& of)
+    explicit SolarForce(const boost::shared_ptr<const yade::SolarPressure>& of)
         : TriangleForce(of->membrane->triangles), sun_(of), membrane_(of->membrane) {}
 
     const char* channel() const override { return "sunlight"; }
@@ -72,11 +71,16 @@ public:
     Culprit culprit(const Moment&, bool) const override { return {}; }
 
 private:
-    shared_ptr<const SolarPressure> sun_;
-    shared_ptr<Membrane> membrane_;
+    boost::shared_ptr<const yade::SolarPressure> sun_;
+    boost::shared_ptr<const yade::Membrane> membrane_;
 };
 
 } // namespace
+} // namespace membrane
+
+namespace yade {
+
+YADE_PLUGIN((SolarPressure));
 
 void SolarPressure::postLoad(SolarPressure&) {
     const StepGuard::Look look;
@@ -90,7 +94,8 @@ void SolarPressure::postLoad(SolarPressure&) {
 }
 
 std::shared_ptr<::membrane::ElementForce> SolarPressure::make() const {
-    return std::make_shared<SolarForce>(boost::static_pointer_cast<const SolarPressure>(shared_from_this()));
+    return std::make_shared<::membrane::SolarForce>(
+        boost::static_pointer_cast<const SolarPressure>(shared_from_this()));
 }
 
 } // namespace yade

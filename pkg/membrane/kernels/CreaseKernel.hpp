@@ -21,8 +21,8 @@ public:
 private:
     const RestState* rest_;
     CreaseLaw law_;
-    Array length_, heightC_, heightD_, sign_;   ///< as in CreaseRest
-    Array steepestLever_, slopeC_, slopeD_;     ///< its functions
+    Array length_, heightC_, heightD_, sign_; ///< as in CreaseRest
+    Array steepestLever_, slopeC_, slopeD_;   ///< its functions
 
     double energyOf(const Crease& crease, const Points& x) const;
 };

@@ -7,15 +7,13 @@
 namespace membrane {
 namespace {
 
-inline void compute(int padded, const Components (&x)[3], const Components (&u)[3], double (&weight)[3][blockSize]) {
-    const Components a = x[0], b = x[1], c = x[2], ua = u[0], ub = u[1], uc = u[2];
+inline void compute(int padded, const OfCorners x, const OfCorners u, double (&weight)[3][blockSize]) {
 #pragma GCC ivdep
     for (int e = 0; e < padded; ++e) {
-        const Eigen::Vector3d corner = a.at(e);
-        const Eigen::Vector3d area = doubleArea(corner, b.at(e), c.at(e));
-        weight[0][e] = dragWeight(area, ua.at(e));
-        weight[1][e] = dragWeight(area, ub.at(e));
-        weight[2][e] = dragWeight(area, uc.at(e));
+        const Eigen::Vector3d area = doubleArea(x.a.at(e), x.b.at(e), x.c.at(e));
+        weight[0][e] = dragWeight(area, u.a.at(e));
+        weight[1][e] = dragWeight(area, u.b.at(e));
+        weight[2][e] = dragWeight(area, u.c.at(e));
     }
 }
 
@@ -36,11 +34,11 @@ MEMBRANE_VECTORISED void addDragWeights(const Arrangement<3>& order, int group, 
     double added[3][blockSize];
     for (int i = order.groups[group]; i < order.groups[group + 1]; ++i) {
         const Block block = order.blocks[i];
-        const Corners x(order, block, job.x, roomX), u(order, block, job.u, roomU);
-        compute(block.paddedCount(), x.at, u.at, added);
+        compute(block.paddedCount(), ofCorners(order, block, job.x, roomX), ofCorners(order, block, job.u, roomU),
+                added);
         for (int k = 0; k < 3; ++k) {
             clearPadding(block, added[k]);
-            addWeights(block, added[k], x.node[k], job.viscous);
+            addWeights(block, added[k], order.node[k].data() + block.begin, job.viscous);
         }
     }
 }
@@ -66,7 +64,8 @@ void DragForce::addTo(LinearForces& to, const Points& x, const Points& v) const 
 Culprit DragForce::culprit(const Moment& moment, bool) const {
     std::vector<double> weights(moment.x.size(), 0.);
     forTriangles(moment.x, [&](const Eigen::Vector3i& triangle, const Eigen::Vector3d& area) {
-        for (const int node : {triangle[0], triangle[1], triangle[2]}) weights[node] += dragWeight(area, moment.v[node]);
+        for (const int node : {triangle[0], triangle[1], triangle[2]})
+            weights[node] += dragWeight(area, moment.v[node]);
     });
     Culprit most;
     for (std::size_t i = 0; i < weights.size(); ++i)

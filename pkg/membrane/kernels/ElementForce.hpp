@@ -43,7 +43,7 @@ struct GroupEnergy {
 
 /// A moment of a run that is looked at afterwards.
 struct Moment {
-    const Points &x, &v; ///< positions [m], velocities [m/s]
+    const Points &x, &v;  ///< positions [m], velocities [m/s]
     const Points& before; ///< positions a step earlier [m]
 };
 

@@ -11,9 +11,9 @@ namespace {
 
 /// What a block of nodes leaves for the sums.
 struct Passing {
-    BlockVectors own;                                           ///< forces of all channels but drag's
-    BlockVectors drag, before, mean;                            ///< its force [N]; velocities [m/s]
-    enum { torque, kinetic, potential, angularMomentum, all };  ///< of each node
+    BlockVectors own;                                          ///< forces of all channels but drag's
+    BlockVectors drag, before, mean;                           ///< its force [N]; velocities [m/s]
+    enum { torque, kinetic, potential, angularMomentum, all }; ///< of each node
     double of[all][blockSize];
 };
 
@@ -26,22 +26,32 @@ inline double sumOf(const double* values, int count) {
     return sum;
 }
 
-/// Sum of the products of two vectors for each node.
+/// Sum of the products of two vectors for each node; the first is set to 0, if it is no longer needed.
+template <bool clear>
 inline double powerOf(const Components& force, const Components& velocity, int count, double (&room)[blockSize]) {
 #pragma GCC ivdep
-    for (int e = 0; e < count; ++e) room[e] = force.at(e).dot(velocity.at(e));
+    for (int e = 0; e < count; ++e) {
+        room[e] = force.at(e).dot(velocity.at(e));
+        if (clear) force.set(e, Eigen::Vector3d::Zero());
+    }
     return sumOf(room, count);
 }
 
 /// Adds up the channels' forces on the nodes begin..end-1.
 inline void gatherOwn(int begin, int end, const Motion& m, Passing& passing) {
     const Components sum = passing.own.components();
-    for (int e = 0; e < end - begin; ++e) sum.set(e, Eigen::Vector3d::Zero());
+    bool first = true;
     for (int k = 0; k < m.channels; ++k) {
         if (!m.own[k].x) continue;
         const Components own = m.own[k] + begin;
+        if (first) {
 #pragma GCC ivdep
-        for (int e = 0; e < end - begin; ++e) sum.add(e, own.at(e));
+            for (int e = 0; e < end - begin; ++e) sum.set(e, own.at(e));
+        } else {
+#pragma GCC ivdep
+            for (int e = 0; e < end - begin; ++e) sum.add(e, own.at(e));
+        }
+        first = false;
     }
 }
 
@@ -98,16 +108,11 @@ inline void addUp(int begin, int end, const Motion& m, Passing& passing, MotionS
     double room[blockSize];
     const Components before = passing.before.components(), mean = passing.mean.components();
     const auto addPowers = [&](int channel, const Components& force) {
-        total.power[channel] += powerOf(force, mean, count, room);
-        if (wanted == Sums::energies) total.arriving[channel] += powerOf(force, before, count, room);
+        if (wanted == Sums::energies) total.arriving[channel] += powerOf<false>(force, before, count, room);
+        total.power[channel] += powerOf<true>(force, mean, count, room);
     };
-    for (int k = 0; k < m.channels; ++k) {
-        if (!m.own[k].x) continue;
-        const Components own = m.own[k] + begin;
-        addPowers(k, own);
-#pragma GCC ivdep
-        for (int e = 0; e < count; ++e) own.set(e, Eigen::Vector3d::Zero());
-    }
+    for (int k = 0; k < m.channels; ++k)
+        if (m.own[k].x) addPowers(k, m.own[k] + begin);
     if (drag) addPowers(dragChannel, passing.drag.components());
     total.torque += sumOf(passing.of[Passing::torque], count);
     if (wanted != Sums::energies) return;

@@ -68,7 +68,8 @@ inline double total(const double (&sum)[lanes]) {
     return all;
 }
 
-template <Wanted wanted, Sums sums> inline GroupEnergy addBlocks(const SideTable& table, int group, const GroupJob& job) {
+template <Wanted wanted, Sums sums>
+inline GroupEnergy addBlocks(const SideTable& table, int group, const GroupJob& job) {
     constexpr bool springs = wanted != Wanted::brakes, brakes = wanted != Wanted::springs;
     constexpr bool brakesApart = wanted == Wanted::brakes || wanted == Wanted::apart;
     double stored[lanes] = {}, missed[lanes] = {};
@@ -222,7 +223,8 @@ GroupEnergy SideForces::add(int group, const GroupJob& job) {
 
 GroupEnergy SideForces::addFilm(int group, const GroupJob& job) {
     const SideTable table{
-        order_, constants_,
+        order_,
+        constants_,
         {stiffness_.data(), restLength_.data(), critical_.data(), coefficient_.data(), length_.data()}};
     if (!job.elastic.isThere()) return brakes(table, group, job);
     const auto fitting = [&](auto none, auto works, auto energies) {

@@ -14,7 +14,7 @@ struct SweepStep {
     double centrifugal = 0.;                           ///< see Motion
     bool move = true;                                  ///< false: forces only
     bool elastic = true;                               ///< false: without the forces of strain energy
-    bool apart = false; ///< keep the forces of each channel apart; needed for `sums`
+    bool apart = false;                                ///< keep the forces of each channel apart; needed for `sums`
     Sums sums = Sums::none;
 };
 

@@ -30,18 +30,16 @@ protected:
     }
 };
 
-/// What a group of triangles has at its corners.
-struct Corners {
-    const int* node[3];
-    Components at[3];
-
-    /// \param room to gather values in, if they do not follow one another
-    Corners(const Arrangement<3>& order, const Block& block, const Components& from, BlockVectors (&room)[3]) {
-        for (int k = 0; k < 3; ++k) {
-            node[k] = order.node[k].data() + block.begin;
-            at[k] = cornerOf(block, node[k], from, room[k]);
-        }
-    }
+/// What the triangles of a block have at each of their corners, beginning with the block's first.
+struct OfCorners {
+    Components a, b, c;
 };
+
+/// \param room to gather it in, where nodes do not follow one another
+inline OfCorners ofCorners(const Arrangement<3>& order, const Block& block, const Components& from,
+                           BlockVectors (&room)[3]) {
+    const auto corner = [&](int k) { return cornerOf(block, order.node[k].data() + block.begin, from, room[k]); };
+    return {corner(0), corner(1), corner(2)};
+}
 
 } // namespace membrane

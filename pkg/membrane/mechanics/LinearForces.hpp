@@ -24,9 +24,9 @@ struct StiffCrease {
 
 /// Symmetric positive matrices that bound how the forces answer to small displacements (K) and velocities (C).
 ///
-/// What a force adds to them is up to it: see ElementForce. Every side counts as taut (a buckled one may become so in the next step), with the stiffness of its direction under
-/// its present tension, and every crease with its penalty and the turning of its forces; negative stiffness is left
-/// out.
+/// What a force adds to them is up to it: see ElementForce. Every side counts as taut (a buckled one may become so in
+/// the next step), with the stiffness of its direction under its present tension, and every crease with its penalty and
+/// the turning of its forces; negative stiffness is left out.
 struct LinearForces {
     std::vector<TautSide> sides;
     std::vector<StiffCrease> creases;
