@@ -4,7 +4,7 @@
 set -euo pipefail
 
 usage() {
-    cat <<'END'
+    sed "s,scripts/run.sh,$me,; ${installed:+/^In the folder/,/^END/d}" <<'END'
 usage: scripts/run.sh COMMAND [options]
 
   deploy [-j N] [options]   fold, spin up and deploy the sail, on N threads (default 1);
@@ -15,17 +15,6 @@ usage: scripts/run.sh COMMAND [options]
                             options of scripts/sail.py
   miura [options]           a Miura-ori sheet from a FOLD file, unfolded by tip masses
   watch [-j N] [options]    deploy the sail in YADE's own window; close the window to end
-  test [-j N] [--full] [MODULE ...]
-                            run the tests, or those of some modules; --full adds the long ones
-  bench [options]           measure the speed beside YADE's own functors and LAMMPS: tables, and
-                            reference/bench.json; options of scripts/bench.py
-  verify [options]          hold the plugin against closed forms and an independent implementation:
-                            a table, and reference/verification.json; options of scripts/verify.py
-  stability [options]       scan where each part of the method fails, into reference/stability
-  parts [options]           what each part of the model changes and costs, into reference/parts.csv
-  chart [options]           accuracy against time for every path, step and mesh, into
-                            reference/chart.csv and chart.png
-  viewer                    bundle the viewer of report.html, which npm's registry holds parts of
   sweep [-j N] [options]    run the paper's Table 2, or a grid of one's own, N cases at once, and
                             report into out/sweep; run again, it goes on where it was stopped;
                             options by `scripts/run.sh sweep --help`
@@ -38,28 +27,48 @@ usage: scripts/run.sh COMMAND [options]
   calibrate TARGET [options]
                             find the alpha_crease and beta whose run follows a measured curve;
                             options of scripts/calibrate.py
+  help                      print this
+
+In the folder of the sources also:
+
+  test [-j N] [--full] [MODULE ...]
+                            run the tests, or those of some modules; --full adds the long ones
+  check                     a short test: build, load, check the layout, deploy on both paths, save
+                            and load, package
+  bench [options]           measure the speed beside YADE's own functors and LAMMPS: tables, and
+                            reference/bench.json; options of scripts/bench.py
+  verify [options]          hold the plugin against closed forms and an independent implementation:
+                            a table, and reference/verification.json; options of scripts/verify.py
+  stability [options]       scan where each part of the method fails, into reference/stability
+  parts [options]           what each part of the model changes and costs, into reference/parts.csv
+  chart [options]           accuracy against time for every path, step and mesh, into
+                            reference/chart.csv and chart.png
+  viewer                    bundle the viewer of report.html, which npm's registry holds parts of
   sanitize                  the C++ tests under address and undefined-behaviour sanitizers, and the
                             threads under a race check
   attack [--short] [NAME ...]
                             the plugin in YADE under the same sanitizers: every class and method with
                             what fits nowhere, in scenes of every kind, and damaged saved scenes
+  packages                  install what is needed to build and to run, and no more
   build                     compile the plugin into build/python
+  package                   make build/package/yade-membrane_….deb, for the YADE that is here
+  probe [--write]           tell how this YADE's classes differ from the nearest known release
   format [--check]          format C++ and Python sources; --check changes nothing and fails where
                             a file is not formatted or a linter complains
-  help                      print this
 
-Each command first installs the Debian packages it lacks. To start YADE by hand:
+Each command first installs the Debian packages it lacks. With --in SUITE, the code name of a Debian,
+it runs in that one, which is made once, by root, in ~/.cache/yade-membrane. To start YADE by hand:
   PYTHONPATH=build/python yade my_sail.py
 END
 }
 
-# Debian packages to build and run, to mesh other sails, to verify, to compare the speed with, and to format.
+# Debian packages to run and to build, to mesh other sails, to verify, to compare the speed with, and to format.
 # Not the VTK of python3-paraview, which excludes python3-vtk9: it and YADE's crash in one process.
-run_packages=(yade python3-numpy python3-matplotlib python3-vtk9
-    g++ cmake make libboost-dev libeigen3-dev python3-dev libglut-dev libgtest-dev)
+run_packages=(yade python3-numpy python3-matplotlib python3-vtk9)
+build_packages=(g++ cmake make libboost-dev libeigen3-dev python3-dev libglut-dev libgtest-dev)
 sail_packages=(python3-gmsh)
 test_packages=(xvfb xauth python3-meshio) # a display for the tests of drawing; another reader and writer of files
-verify_packages=(calculix-ccx python3-scipy)
+verify_packages=(python3-scipy)
 bench_packages=(lammps openmpi-bin valgrind)
 animation_packages=(xvfb libgl1-mesa-dri ffmpeg)
 browser_packages=(chromium chromium-driver python3-selenium)
@@ -69,20 +78,36 @@ calibrate_packages=(python3-scipy)
 slurm_packages=(slurmctld slurmd slurm-client munge) # for a test
 format_packages=(clang-format black python3-flake8 shellcheck)
 
-# GCC's OpenMP is unknown to the race check, LLVM's tells it of its barriers.
-sanitize_packages=(g++ cmake make libeigen3-dev libgtest-dev clang-14 libclang-rt-14-dev libomp-14-dev)
-
-yade_version=2023.02a
 no_display=(-n) # how YADE is told to do without
 
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
+root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.." && pwd -P)
 build=$root/build
+me=scripts/run.sh installed=
+[[ -e $root/CMakeLists.txt ]] || me=yade-membrane installed=yes # by `package`: there is nothing to build
+releases=$root/pkg/membrane/yade-abi/releases.txt
 PATH=/usr/bin:/bin:$PATH # Debian's tools before any other of the same name
 
-say() { printf 'run.sh: %s\n' "$*" >&2; }
+say() { printf '%s: %s\n' "${me##*/}" "$*" >&2; }
 die() {
     say "$@"
     exit 1
+}
+
+# system NAME: what the system says of itself.
+system() { sed -n "s/^$1=\"\?\([^\"]*\).*/\1/p" /etc/os-release; }
+
+# Version of the YADE that is installed, without Debian's revision.
+yade_here() { dpkg-query -W -f='${Version}' yade 2>/dev/null | sed 's/-[^-]*$//'; }
+
+# column NAME: of releases.txt, a line each.
+column() {
+    awk -v name="$1" '/^# yade / { for (i = 2; i <= NF; ++i) number[$i] = i - 1 } !/^#/ { print $number[name] }' "$releases"
+}
+
+# of_release NAME: what releases.txt tells of the YADE that is here or, without one, of that which the system packages.
+of_release() {
+    paste <(column yade) <(column suite) <(column "$1") | awk -v yade="$(yade_here)" \
+        -v suite="$(system VERSION_CODENAME)" 'yade ? $1 == yade : $2 == suite { print $3 }'
 }
 
 # Sets as_root to what must precede a command for it to run as root; fails if nothing does.
@@ -102,7 +127,7 @@ find_root() {
 
 # need PACKAGE...: installs those that are missing and removes none.
 need() {
-    command -v dpkg-query >/dev/null || die "this is not Debian 12: there is no dpkg-query"
+    command -v dpkg-query >/dev/null || die "this is neither Debian nor Ubuntu: there is no dpkg-query"
     local status package log
     local -a missing=() as_root=()
     status=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "$@" 2>/dev/null || true)
@@ -126,22 +151,40 @@ need() {
     rm "$log"
 }
 
-# Configures afresh if build/ is new or was moved here from elsewhere, then lets CMake compile what has changed.
-configure_and_make() {
-    if ! { [[ -e $build/Makefile ]] && grep -qxF "CMAKE_CACHEFILE_DIR:INTERNAL=$build" "$build/CMakeCache.txt"; }; then
-        cmake --fresh -S "$root" -B "$build" -G "Unix Makefiles" -DCMAKE_BUILD_TYPE=Release || return
+# offer PACKAGE WHAT: installs a package if the system has it; says what is left out if it has not.
+offer() {
+    local -a as_root=()
+    # Without package lists apt does not know what there is.
+    [[ -n $(apt-cache madison dpkg) ]] || { find_root && "${as_root[@]}" apt-get -q update >&2; } || true
+    if dpkg-query -W "$1" >/dev/null 2>&1 || [[ -n $(apt-cache madison "$1") ]]; then
+        need "$1"
+    else
+        say "$(system PRETTY_NAME) has no package $1: $2 is left out"
     fi
-    cmake --build "$build" --parallel "$(nproc)"
+}
+
+# configure FOLDER [options of CMake]: sets up a build folder, unless it is set up already. Begins afresh, without an
+# old object, if the folder was moved here from elsewhere or is for another system or YADE.
+configure() {
+    local folder=$1 made_for
+    made_for="$*, $(system PRETTY_NAME), YADE $(of_release yade)"
+    if [[ -e $folder/Makefile && $(cat "$folder/.made-for" 2>/dev/null) == "$made_for" ]]; then return; fi
+    rm -f "$folder/.made-for"
+    cmake --fresh -S "$root" -B "$folder" -G "Unix Makefiles" "${@:2}" && printf '%s\n' "$made_for" >"$folder/.made-for"
+}
+
+configure_and_make() {
+    configure "$build" -DCMAKE_BUILD_TYPE=Release && cmake --build "$build" --parallel "$(nproc)"
 }
 
 # Brings build/ up to date: silent if it is, else shows what is compiled, and on failure everything.
 compile() {
-    need "${run_packages[@]}"
-    local yade
-    yade=$(dpkg-query -W -f='${Version}' yade)
-    [[ $yade == "$yade_version"-* ]] || die "this is built for YADE $yade_version, that of Debian 12, but here is $yade"
+    [[ -z $installed ]] || return 0
+    need "${run_packages[@]}" "${build_packages[@]}"
+    [[ -n $(of_release yade) ]] ||
+        die "YADE $(yade_here) is none of those the plugin is for, $(column yade | xargs); scripts/run.sh probe tells how it differs"
     if ! { mkdir -p "$build" && [[ -w $build ]]; } 2>/dev/null; then
-        [[ -e $build/python/membrane/_membrane.so ]] || die "cannot write to $build"
+        compgen -G "$build/python/membrane/_membrane.*.so" >/dev/null || die "cannot write to $build"
         say "cannot write to $build: taking what is built there"
         return
     fi
@@ -155,9 +198,10 @@ compile() {
     exec 9>&-
 }
 
-# Bundles the viewer of report.html with npm, unless it is up to date. Ends with 1, and a word, where npm or what it
+# Bundles the viewer of report.html with npm, unless it is up to date or all is installed. Ends with 1, and a word, where npm or what it
 # fetches cannot be had, and with 2 where that cannot be bundled.
 bundle_viewer() (
+    [[ -z $installed ]] || exit 0
     source=$root/scripts/membrane/viewer target=$build/python/membrane/viewer.html work=$build/viewer
     [[ ! -e $target || -n $(find "$source" -newer "$target" -print -quit) ]] || exit 0
     command -v npm >/dev/null || (need nodejs npm) || exit 1
@@ -192,7 +236,9 @@ set_environment() {
         export HOME=$build/home
         if ! { mkdir -p "$HOME" && [[ -w $HOME ]]; } 2>/dev/null; then new_home; fi
     fi
-    export PYTHONPATH=$build/python${PYTHONPATH:+:$PYTHONPATH} PYTHONUNBUFFERED=1 MPLBACKEND=Agg
+    local python=$build/python
+    [[ -z $installed ]] || python=$(dirname "$(compgen -G "$root/../../lib/python3*/dist-packages/membrane")")
+    export PYTHONPATH=$python${PYTHONPATH:+:$PYTHONPATH} PYTHONUNBUFFERED=1 MPLBACKEND=Agg
 }
 
 # run_yade SCRIPT [-j N] [options]: runs a script in YADE, with the other options as its sys.argv[1:].
@@ -231,9 +277,10 @@ run_tests() {
 # build_sanitized FOLDER SANITIZERS COMPILER PLUGIN TARGET...: builds with sanitizers, with the plugin if that is ON.
 build_sanitized() {
     local folder=$root/$1
+    mkdir -p "$folder"
     if ! {
-        cmake -S "$root" -B "$folder" -G "Unix Makefiles" -DMEMBRANE_PLUGIN="$4" -DMEMBRANE_SANITIZE="$2" \
-            -DCMAKE_CXX_COMPILER="$3" -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS="-O1 -D_GLIBCXX_ASSERTIONS" &&
+        configure "$folder" -DMEMBRANE_PLUGIN="$4" -DMEMBRANE_SANITIZE="$2" -DCMAKE_CXX_COMPILER="$3" \
+            -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS="-O1 -D_GLIBCXX_ASSERTIONS" &&
             cmake --build "$folder" --parallel "$(nproc)" --target "${@:5}"
     } >"$folder.log" 2>&1; then
         cat "$folder.log" >&2
@@ -252,16 +299,20 @@ run_sanitized() {
 memory_sanitizers=address,undefined,float-cast-overflow
 
 sanitize() {
-    need "${sanitize_packages[@]}"
+    local llvm
+    llvm=$(of_release llvm)
+    [[ -n $llvm ]] || die "sanitize: $(system PRETTY_NAME) is none of those whose LLVM is known: $(column suite | xargs)"
+    # GCC's OpenMP is unknown to the race check, LLVM's tells it of its barriers.
+    need g++ cmake make libeigen3-dev libgtest-dev "clang-$llvm" "libclang-rt-$llvm-dev" "libomp-$llvm-dev"
     UBSAN_OPTIONS=print_stacktrace=1 run_sanitized build-asan $memory_sanitizers g++
-    OMP_TOOL_LIBRARIES=/usr/lib/llvm-14/lib/libarcher.so \
+    OMP_TOOL_LIBRARIES=/usr/lib/llvm-$llvm/lib/libarcher.so \
         TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1" \
-        run_sanitized build-tsan thread clang++-14 test_Sweep test_Lanczos test_LinearForces
+        run_sanitized build-tsan thread "clang++-$llvm" test_Sweep test_Lanczos test_LinearForces
 }
 
 # The plugin, built with sanitizers into the folder of its C++ tests, in YADE.
 attack() {
-    need "${run_packages[@]}"
+    need "${run_packages[@]}" "${build_packages[@]}"
     build=$root/build-asan
     build_sanitized build-asan $memory_sanitizers g++ ON _membrane membrane_python
     set_environment
@@ -274,7 +325,7 @@ python_sources() { find "$root/scripts" "$root/tests" "$root/reference" -name '*
 
 format() {
     need "${format_packages[@]}"
-    local -a cpp python shell=("$root/scripts/run.sh" "$root/scripts/workflow/slurm/status.sh" "$root/.ci/run")
+    local -a cpp python shell=("$root"/scripts/*.sh "$root"/scripts/packaging/* "$root/scripts/workflow/slurm/status.sh" "$root/.ci/run")
     local -a black=(black -q -l 100)
     mapfile -t cpp < <(cpp_sources)
     mapfile -t python < <(python_sources)
@@ -297,10 +348,51 @@ format() {
     esac
 }
 
+# Runs the command in another Debian, if --in SUITE is among its options.
+run_elsewhere() {
+    local suite=
+    local -a as_root=() options=()
+    while (($#)); do
+        if [[ $1 == --in ]]; then
+            suite=${2-none}
+            shift
+        else
+            options+=("$1")
+        fi
+        shift || true
+    done
+    [[ -n $suite ]] || return 0
+    column suite | grep -qxF -- "$suite" || die "--in takes one of $(column suite | xargs), not '$suite'"
+    (need debootstrap) || true
+    find_root || as_root=(env)
+    exec "${as_root[@]}" "$root/scripts/in_debian.sh" "$suite" "$command" "${options[@]}"
+}
+
+# list PACKAGE...: them, between commas.
+list() { printf '%s, ' "$@" | sed 's/, $//'; }
+
+# Makes build/package/yade-membrane_….deb.
+package() {
+    compile
+    viewer_if_possible
+    local yade
+    yade=$(dpkg-query -W -f='${Version}' yade)
+    rm -rf "$build/package"
+    cpack --config "$build/CPackConfig.cmake" -B "$build/package" \
+        -D CPACK_DEBIAN_PACKAGE_DEPENDS="$(list "yade (= $yade)" "${run_packages[@]:1}")" \
+        -D CPACK_DEBIAN_PACKAGE_RECOMMENDS="$(list "${sail_packages[@]}" "${sweep_packages[@]}" "${calibrate_packages[@]}")" \
+        -D CPACK_DEBIAN_PACKAGE_SUGGESTS="$(list "${workflow_packages[@]}" "${animation_packages[@]}")" >"$build/package.log" ||
+        { cat "$build/package.log" >&2 && die "package: see above"; }
+    say "made $(compgen -G "$build/package/*.deb")"
+}
+
 take_nothing() { (($# == 0)) || die "$command: unknown option '$1'"; }
 
 command=${1-help}
 shift || true
+[[ -z $installed || $command =~ ^(deploy|report|animate|sail|miura|watch|sweep|case|ikaros|disk|workflow|calibrate|-?-?h(elp)?)$ ]] ||
+    die "unknown command '$command', or one for the folder of the sources only; yade-membrane help lists those there are"
+[[ -n $installed ]] || run_elsewhere "$@"
 case $command in
 deploy)
     compile
@@ -328,6 +420,11 @@ test)
     (need "${animation_packages[@]}" "${browser_packages[@]}") || true # tests say what they lack
     run_tests "$@"
     ;;
+check)
+    take_nothing "$@"
+    compile
+    run_tests test_loading test_fused.TestReference test_save_load test_package
+    ;;
 bench)
     need "${bench_packages[@]}"
     compile
@@ -336,7 +433,15 @@ bench)
 verify)
     need "${verify_packages[@]}"
     compile
+    offer calculix-ccx "the comparison with CalculiX"
     run_yade "$root/scripts/verify.py" "$@"
+    ;;
+probe)
+    need yade g++ binutils
+    mkdir -p "$build"
+    g++ -std=c++17 -O1 -shared -fPIC "$root/scripts/probing/allocations.cpp" -o "$build/allocations.so"
+    export LD_PRELOAD=$build/allocations.so
+    run_yade "$root/scripts/probe.py" "$@"
     ;;
 sweep)
     need "${sweep_packages[@]}"
@@ -392,9 +497,17 @@ sanitize)
     sanitize
     ;;
 attack) attack "$@" ;;
+packages)
+    take_nothing "$@"
+    need "${run_packages[@]}" "${build_packages[@]}"
+    ;;
 build)
     take_nothing "$@"
     compile
+    ;;
+package)
+    take_nothing "$@"
+    package
     ;;
 format) format "$@" ;;
 help | -h | --help) usage ;;

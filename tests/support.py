@@ -427,12 +427,12 @@ def yade_environment():
     return {**os.environ, "PYTHONPATH": path, "MPLBACKEND": "Agg"}
 
 
-def run_yade(script, *arguments, threads=1, folder=None, environment=None):
+def run_yade(script, *arguments, threads=1, folder=None, environment=None, **changes):
     """Run `yade -n -x` on a script in `folder`; returns the CompletedProcess, output as text."""
     return subprocess.run(
         ["yade", "-n", "-x", f"-j{threads}", str(script), *map(str, arguments)],
         cwd=folder or scratch(),
-        env=environment or yade_environment(),
+        env={**(environment or yade_environment()), **changes},
         capture_output=True,
         text=True,
         timeout=600,

@@ -2,6 +2,7 @@
 """Checkpoints: whole and on the disk before anything counts on them; damaged ones are left out."""
 
 import contextlib
+import io
 import json
 import os
 import resource
@@ -11,6 +12,7 @@ from pathlib import Path
 from unittest import mock
 
 import numpy as np
+import yade.config
 from membrane import checkpoint, sail
 from membrane.checkpoint import SCENE, STATE, Checkpoints, save_scene
 from membrane.output import HistoryWriter, VtkSeries, is_whole_series, is_whole_table
@@ -139,6 +141,15 @@ class TestDamage(CheckpointTest):
             (newest / STATE).write_text(json.dumps(content))
 
         self.falls_back(damage)
+
+    def test_scene_of_another_yade_is_not_even_tried(self):
+        said = io.StringIO()
+        with mock.patch.object(yade.config, "version", "2001.1 \n"), contextlib.redirect_stdout(
+            said
+        ):
+            self.assertIsNone(self.saved.load())
+        self.assertRegex(said.getvalue(), r"00002 was saved by YADE 20\S+; this is 2001\.1, which ")
+        self.assertEqual(list(self.folder.iterdir()), [])
 
     def test_state_whose_files_are_not_as_it_says(self):
         older = self.saved.load(lambda state: state["number"] < 3)

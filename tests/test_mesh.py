@@ -354,20 +354,6 @@ class TestGeometry(unittest.TestCase):
         self.assertEqual(len(geometry.crossings(folded, sides, triangles)), 0)
         self.assertEqual(geometry.crossings(film, sides[:0], triangles).shape, (0, 2))
 
-
-def _all_crossings(nodes, sides, triangles):
-    """What `geometry.crossings` gives, from a linear system for each pair."""
-    found = []
-    for i, (a, b) in enumerate(sides):
-        others = np.flatnonzero(~np.isin(triangles, (a, b)).any(axis=1))
-        p, q, r = nodes[triangles[others].T]
-        along = np.broadcast_to(nodes[a] - nodes[b], p.shape)
-        columns = np.stack([along, q - p, r - p], axis=-1)
-        s, u, v = np.linalg.solve(columns, nodes[a] - p).T
-        within = (0 < s) & (s < 1) & (u > 0) & (v > 0) & (u + v < 1)
-        found += [(i, k) for k in others[within]]
-    return found
-
     def test_quadrangles_are_cut_along_the_better_diagonal(self):
         nodes = np.array(
             [(0, 0, 0), (3, 0, 0), (3, 1, 0), (0, 1, 0)]  # either way the same
@@ -393,6 +379,20 @@ def _all_crossings(nodes, sides, triangles):
         np.testing.assert_array_equal(found, [[0, 1, 2], [0, 2, 3]])
         with self.assertRaisesRegex(ValueError, r"round \[0.5, 0.5, 0.0\] m cross"):
             geometry.cut_quadrangles(nodes, quads)
+
+
+def _all_crossings(nodes, sides, triangles):
+    """What `geometry.crossings` gives, from a linear system for each pair."""
+    found = []
+    for i, (a, b) in enumerate(sides):
+        others = np.flatnonzero(~np.isin(triangles, (a, b)).any(axis=1))
+        p, q, r = nodes[triangles[others].T]
+        along = np.broadcast_to(nodes[a] - nodes[b], p.shape)
+        columns = np.stack([along, q - p, r - p], axis=-1)
+        s, u, v = np.linalg.solve(columns, (nodes[a] - p)[..., None])[..., 0].T
+        within = (0 < s) & (s < 1) & (u > 0) & (v > 0) & (u + v < 1)
+        found += [(i, k) for k in others[within]]
+    return found
 
 
 class TestMeasures(unittest.TestCase):

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Crease patterns become meshes: faces, holes, cuts, creases, folded starts; or one sentence."""
 
+import os
+import signal
 import unittest
 from dataclasses import replace
+from unittest.mock import patch
 
 import numpy as np
 from membrane import geometry, pattern_mesh
@@ -29,6 +32,11 @@ def ring(first, count):
     """Edges of a closed loop of vertices."""
     ids = first + np.arange(count)
     return np.column_stack([ids, np.roll(ids, -1)]).tolist()
+
+
+def crash(*_):
+    """As gmsh 4.8 did on a spike; later ones mesh it."""
+    os.kill(os.getpid(), signal.SIGSEGV)
 
 
 SQUARE = [(0, 0), (3, 0), (3, 3), (0, 3)]
@@ -351,11 +359,11 @@ class TestMesh(unittest.TestCase):
         thin = [(0, 0), (1e8, 0), (1e8, 1), (0, 1)]  # gmsh would ask whether to go on, and wait
         with self.assertRaisesRegex(ValueError, "more than 200000 sides"):
             mesh_pattern(pattern_of(frame(thin, ring(0, 4), "BBBB")))
-        spike = [(-154251.31243085643, -6.17560442434871e-07), (2, 0), (2, 2), (0, 2)]
-        spike += [(0.5, 1), (1.5, 1)]  # on which gmsh ends its process
-        pattern = pattern_of(frame(spike, [*ring(0, 4), (4, 5), (0, 4)], "BBBBCV"))
-        with self.assertRaisesRegex(ValueError, "gmsh cannot mesh the pattern: it crashes"):
-            mesh_pattern(pattern)
+
+    def test_where_gmsh_crashes_is_told(self):
+        with patch.object(pattern_mesh, "_by_gmsh", crash):
+            with self.assertRaisesRegex(ValueError, "gmsh cannot mesh the pattern: it crashes"):
+                mesh_pattern(pattern_of(frame(SQUARE, ring(0, 4), "BBBB")))
 
     def test_a_size_out_of_range_is_refused(self):
         pattern = pattern_of(frame(SQUARE, ring(0, 4), "BBBB"))

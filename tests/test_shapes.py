@@ -2,7 +2,10 @@
 """The ParaView series: fields on sides and triangles, as VTK's own reader reads them."""
 
 import json
+import re
 import unittest
+from binascii import a2b_base64
+from unittest.mock import patch
 from xml.etree import ElementTree
 
 import meshio
@@ -49,6 +52,8 @@ class TestShapes(unittest.TestCase):
         ends = [np.sort(np.delete(self.triangles, k, axis=1), axis=1) for k in range(3)]
         return np.array([[values[self.row[tuple(pair)]] for pair in e.tolist()] for e in ends]).T
 
+    # Python's last security updates decode on beyond padding, where meshio counts on an end.
+    @patch("base64.b64decode", lambda data: a2b_base64(re.match("[^=]*=*", data)[0]))
     def test_meshio_reads_the_same(self):
         for name, kind, cells, fields in (
             ("film", "triangle", self.triangles, self.film),

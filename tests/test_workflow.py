@@ -281,15 +281,21 @@ class TestKilled(unittest.TestCase):
         self.assertEqual(self.finish(killed), expected)
 
 
+# Snakemake's function took one profile up to 7.19, and takes several since 7.32.
+READ = """
+import inspect, json, snakemake, sys
+several = "profiles" in inspect.signature(snakemake.get_argument_parser).parameters
+parser = snakemake.get_argument_parser(sys.argv[1:] if several else sys.argv[1])
+print(json.dumps(vars(parser.parse_args([])), default=str))
+"""
+
+
 class TestProfile(unittest.TestCase):
     """The profile as Snakemake's own command-line parser reads it."""
 
     def setUp(self):
-        read = "import json, snakemake; p = snakemake.get_argument_parser({!r}); " + (
-            "print(json.dumps(vars(p.parse_args([])), default=str))"
-        )
         done = subprocess.run(
-            ["/usr/bin/python3", "-c", read.format(str(PROFILE))], capture_output=True, text=True
+            ["/usr/bin/python3", "-c", READ, str(PROFILE)], capture_output=True, text=True
         )
         self.assertEqual(done.returncode, 0, done.stderr)
         self.values = json.loads(done.stdout)

@@ -22,11 +22,11 @@ namespace {
 
 /// Finds the place of an energy that is reset in every step. YADE's own search makes two from two threads at once.
 void findEnergy(EnergyTracker& energies, const string& name, int& index) {
-    static std::mutex guard;
+    static std::mutex counting;
     if (__atomic_load_n(&index, __ATOMIC_ACQUIRE) >= 0) return;
-    const std::lock_guard<std::mutex> lock(guard);
+    const std::lock_guard<std::mutex> lock(counting);
     int found = index;
-    if (found < 0) energies.findId(name, found, /*reset in every step*/ true);
+    if (found < 0) energies.add(0., name, found, /*reset in every step*/ true); // findId itself is not in every YADE
     __atomic_store_n(&index, found, __ATOMIC_RELEASE);
 }
 

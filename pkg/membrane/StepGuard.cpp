@@ -13,7 +13,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-std::mutex stepMutex;
+std::mutex guard;
 std::condition_variable changed;
 std::thread::id computing;      ///< the thread in whose engine a step is, if any
 Clock::time_point lastArrival;  ///< when a step last arrived at an engine
@@ -43,7 +43,7 @@ private:
 } // namespace
 
 StepGuard::Step::Step() {
-    std::unique_lock<std::mutex> lock(stepMutex);
+    std::unique_lock<std::mutex> lock(guard);
     if (Omega::instance().isRunning() && !PyGILState_Check()) runsScene = true;
     const auto now = Clock::now();
     betweenSteps = now - lastArrival;
@@ -75,7 +75,7 @@ StepGuard::Step::Step() {
 
 StepGuard::Step::~Step() {
     {
-        const std::lock_guard<std::mutex> lock(stepMutex);
+        const std::lock_guard<std::mutex> lock(guard);
         computing = std::thread::id();
     }
     changed.notify_all();
@@ -84,13 +84,13 @@ StepGuard::Step::~Step() {
 StepGuard::Look::Look(bool between) : holds_(false) {
     if (runsScene || looksHere) return;
     {
-        const std::lock_guard<std::mutex> lock(stepMutex);
+        const std::lock_guard<std::mutex> lock(guard);
         if (computing == std::this_thread::get_id()) return;
         number_ = given++; // before Python's lock is given up, which a step may wait for
         ++waiting;
     }
     const WithoutPython without;
-    std::unique_lock<std::mutex> lock(stepMutex);
+    std::unique_lock<std::mutex> lock(guard);
     // A step that never arrives, for another engine keeps it or none of ours is there, must not be waited for.
     const auto patience = Clock::now() + std::max<Clock::duration>(std::chrono::seconds(1), 3 * betweenSteps);
     const auto comesIn = [&] {
@@ -105,7 +105,7 @@ StepGuard::Look::Look(bool between) : holds_(false) {
 StepGuard::Look::~Look() {
     if (!holds_) return;
     {
-        const std::lock_guard<std::mutex> lock(stepMutex);
+        const std::lock_guard<std::mutex> lock(guard);
         looking = looksHere = false;
         --waiting;
         if (number_ < admitted) --pending;
@@ -130,7 +130,7 @@ void StepGuard::refuseCall(const Engine& engine) {
 
 void StepGuard::holdForSave() {
     if (!othersRun()) return;
-    const std::lock_guard<std::mutex> lock(stepMutex);
+    const std::lock_guard<std::mutex> lock(guard);
     saving = true;
 }
 

@@ -7,10 +7,12 @@
 if(NOT DEFINED Python3_EXECUTABLE AND EXISTS /usr/bin/python3)
     set(Python3_EXECUTABLE /usr/bin/python3)
 endif()
-find_package(Python3 QUIET COMPONENTS Interpreter Development.Module)
-membrane_require(Python3_FOUND "Python 3 with its headers" python3-dev)
-find_package(Boost 1.74.0 EXACT QUIET)
-membrane_require(Boost_FOUND "Boost 1.74, the version of YADE's package," libboost-dev)
+include(pkg/membrane/yade-abi/release.cmake)
+find_package(Python3 ${release_python} EXACT QUIET COMPONENTS Interpreter Development.Module)
+membrane_require(Python3_FOUND "Python ${release_python}, the one of YADE ${MEMBRANE_YADE}, with its headers"
+                 python3-dev)
+find_package(Boost ${release_boost} EXACT QUIET CONFIG)
+membrane_require(Boost_FOUND "Boost ${release_boost}, the one of YADE ${MEMBRANE_YADE}," libboost-dev)
 find_path(GLUT_INCLUDE_DIR GL/glut.h) # and OpenGL's own, to draw in YADE's 3D view; YADE brings the libraries
 membrane_require(GLUT_INCLUDE_DIR "GL/glut.h" libglut-dev)
 
@@ -33,7 +35,8 @@ target_include_directories(membrane_plugin SYSTEM PRIVATE ${Boost_INCLUDE_DIRS} 
 target_compile_definitions(membrane_plugin PRIVATE MEMBRANE_MODULE) # module.cpp, which a YADE tree leaves out
 
 # The macros that shape YADE's classes, as its package was built.
-target_compile_definitions(membrane_plugin PRIVATE YADE_OPENMP YADE_MPI YADE_OPENGL YADE_FEM YADE_REAL_BIT=64)
+target_compile_definitions(membrane_plugin PRIVATE YADE_OPENMP YADE_MPI YADE_OPENGL YADE_FEM YADE_REAL_BIT=64
+                           YADE_ABI_RELEASE=${release_abi} MEMBRANE_YADE="${MEMBRANE_YADE}")
 if(YADE_SOURCE_DIR)
     if(NOT EXISTS ${YADE_SOURCE_DIR}/core/Scene.hpp)
         message(FATAL_ERROR "YADE_SOURCE_DIR=${YADE_SOURCE_DIR} is not a YADE source tree: it has no core/Scene.hpp")
@@ -51,7 +54,9 @@ endif()
 set(python_dir ${PROJECT_BINARY_DIR}/python)
 add_library(_membrane MODULE)
 target_link_libraries(_membrane PRIVATE membrane_plugin)
-set_target_properties(_membrane PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${python_dir}/membrane)
+# Named after Python's ABI, so that no other Python takes it.
+set_target_properties(_membrane PROPERTIES PREFIX "" SUFFIX .${Python3_SOABI}.so
+                      LIBRARY_OUTPUT_DIRECTORY ${python_dir}/membrane)
 
 # Symbol check: the same objects linked once with nothing left undefined, under the name that a YADE tree would give
 # them. Not installed; a test loads it as YADE loads libraries of its own.
@@ -62,7 +67,7 @@ set(symbol_sources
     ${lib_dir}/yade-double/libpkg_common.so
     ${lib_dir}/yade-double/libpkg_dem.so
     ${lib_dir}/libGL.so.1
-    ${lib_dir}/libglut.so.3.12
+    ${lib_dir}/libglut.so
     ${lib_dir}/libpython${python_version}.so.1)
 set(boost_libraries python${Python3_VERSION_MAJOR}${Python3_VERSION_MINOR} serialization)
 if(YADE_SOURCE_DIR)
@@ -120,25 +125,14 @@ foreach(file IN LISTS python_sources)
                        COMMAND ${CMAKE_COMMAND} -E copy ${source} ${python_dir}/${file} VERBATIM)
     list(APPEND python_copies ${python_dir}/${file})
 endforeach()
+configure_file(${releases} ${python_dir}/membrane COPYONLY)
 add_custom_target(membrane_python ALL DEPENDS ${python_copies})
 
-# A file deleted or renamed in scripts/membrane must not live on as a copy.
-file(GLOB_RECURSE stale_copies ${python_dir}/membrane/*.py)
-if(python_copies)
-    list(REMOVE_ITEM stale_copies ${python_copies})
-endif()
+# A file deleted or renamed in scripts/membrane must not live on as a copy, nor the module of another Python.
+file(GLOB_RECURSE stale_copies ${python_dir}/membrane/*.py ${python_dir}/membrane/_membrane*.so)
+list(REMOVE_ITEM stale_copies ${python_copies} ${python_dir}/membrane/_membrane.${Python3_SOABI}.so)
 if(stale_copies)
     file(REMOVE ${stale_copies})
 endif()
 
-# ---------------------------------------------------------------------------------------------------------------------
-# Installation: where every `yade` run finds the package, if the prefix is /usr/local (the default) or /usr.
-
-set(package_dir lib/python${python_version}/dist-packages/membrane)
-install(TARGETS _membrane LIBRARY DESTINATION ${package_dir})
-install(DIRECTORY scripts/membrane/ DESTINATION ${package_dir} FILES_MATCHING PATTERN *.py
-        PATTERN __pycache__ EXCLUDE PATTERN viewer EXCLUDE)
-# The viewer of report.html, if `scripts/run.sh viewer` has made it.
-install(FILES ${python_dir}/membrane/viewer.html DESTINATION ${package_dir} OPTIONAL)
-install(DIRECTORY scripts/ DESTINATION share/membrane FILES_MATCHING PATTERN *.py PATTERN *.fold
-        PATTERN membrane EXCLUDE PATTERN __pycache__ EXCLUDE)
+include(pkg/membrane/package.cmake)

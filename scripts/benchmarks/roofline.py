@@ -145,7 +145,7 @@ def build():
     """Compile the program, and see that valgrind is there."""
     for tool, package in {"valgrind": "valgrind", "objdump": "binutils"}.items():
         if not shutil.which(tool):
-            raise RuntimeError(f"there is no {tool}; on Debian 12: apt-get install {package}")
+            raise RuntimeError(f"there is no {tool}; on Debian: apt-get install {package}")
     said(["cmake", "-S", results.ROOT, "-B", BUILD])
     said(["cmake", "--build", BUILD, "--target", PROGRAM.name])
 

@@ -2,9 +2,14 @@
 """Loads the plugin into the running YADE, after checking that the two fit together."""
 
 import importlib
+import importlib.machinery
+import mmap
+import re
 import sys
+from pathlib import Path
 
-YADE_VERSION = "2023.02a"
+from . import _layout
+
 PRECISION = "PrecisionDouble"
 VERSION = "0.1.0"
 CLASSES = (
@@ -51,9 +56,8 @@ def load():
             f"membrane: this YADE was built with another pkg/membrane, without {', '.join(missing)}"
         )
     if missing:
-        _check_version()
-        native = importlib.import_module("._membrane", __package__)
-        check_layout(native, wrapper)
+        native = _module(*_version())
+        _layout.check(native, wrapper)
         native.register_classes(list(names))
         _let_others_know(native, wrapper)
     for alias, name in ALIASES.items():
@@ -79,88 +83,49 @@ def _running_yade():
     return sys.modules["yade.wrapper"]
 
 
-def _check_version():
-    """Raise ImportError unless the YADE that runs is the one that the module was built for."""
-    config = sys.modules["yade.config"] if "yade.config" in sys.modules else None
-    config = config or importlib.import_module("yade.config")
-    found = (config.version.strip(), config.highPrecisionName)
-    if found != (YADE_VERSION, PRECISION):
+def _version():
+    """Version and precision of the YADE that runs."""
+    config = sys.modules.get("yade.config") or importlib.import_module("yade.config")
+    return config.version.strip(), config.highPrecisionName
+
+
+def _module(version, precision):
+    """The extension module, loaded only if it is for a YADE of this version and precision."""
+    folder = Path(__file__).parent
+    right = folder / f"_membrane{importlib.machinery.EXTENSION_SUFFIXES[0]}"
+    built = right if right.exists() else next(folder.glob("_membrane*.so"), None)
+    if built is None:
+        raise ImportError(f"membrane: {right} is missing; scripts/run.sh build makes it")
+    release = built_for(built)
+    if (version, precision) != (release, PRECISION):
+        systems = _systems()
+        able = "scripts/run.sh build makes it for this one"
         raise ImportError(
-            f"membrane: built for YADE {YADE_VERSION} ({PRECISION}), "
-            f"but this is YADE {found[0]} ({found[1]})"
+            f"membrane: built for YADE {release} ({PRECISION}), but this is YADE {version} "
+            f"({precision}); "
+            + (able if version in systems else f"it can be built for {', '.join(systems)} only")
         )
-
-
-def check_layout(native, wrapper):
-    """Compare what the compiled offsets find in native objects with what Python wrote there.
-
-    Parameters
-    ----------
-    native : the extension module
-    wrapper : module yade.wrapper
-
-    Raises
-    ------
-    ImportError
-        naming the first attribute that differs.
-    """
-    for cls, wrote, seen in _round_trips(native, wrapper):
-        for name, value in wrote.items():
-            if seen[name] != value:
-                raise ImportError(
-                    f"membrane: this YADE lays out its classes otherwise than {YADE_VERSION}-1: "
-                    f"{cls}.{name} was set to {value} but reads as {seen[name]}"
-                )
-
-
-def _round_trips(native, wrapper):
-    """Yield (class, values by attribute as Python knows them, the same as C++ sees them)."""
-    state = {
-        "pos": (1.5, 2.5, 3.5),
-        "refPos": (4.5, 5.5, 6.5),
-        "vel": (7.5, 8.5, 9.5),
-        "angVel": (10.5, 11.5, 12.5),
-        "inertia": (13.5, 14.5, 15.5),
-        "mass": 16.5,
-    }
-    material = {"density": 17.5, "young": 18.5, "poisson": 0.195, "frictionAngle": 0.205}
-    body = wrapper.Body()
-    body.mask = 21
-    body.bounded = False
-    body.shape = wrapper.Sphere(radius=22.5)
-    body.material = wrapper.FrictMat(**material)
-    for name, value in state.items():
-        setattr(body.state, name, value)
-    body.state.blockedDOFs = "xZ"
-    others = {"mask": 21, "bounded": False, "radius": 22.5, "blockedDOFs": 1 | 32}
-    yield "Body", {**state, **material, **others}, native.fields_of_body(body)
-
-    native.write_state(body.state, (23.5, 24.5, 25.5), 26.5)
-    yield "State", {"vel": (23.5, 24.5, 25.5), "mass": 26.5}, {
-        "vel": tuple(body.state.vel),
-        "mass": body.state.mass,
-    }
-
-    geom = {"normal": (0.0, 0.6, 0.8), "contactPoint": (1.5, 2.5, 3.5), "penetrationDepth": 6.5}
-    radii = {"refR1": 4.5, "refR2": 5.5}
-    phys = {"kn": 7.5, "ks": 8.5, "normalForce": (9.5, 1.5, 2.5), "shearForce": (3.5, 4.5, 6.5)}
-    seen = native.fields_of_interaction(
-        wrapper.ScGeom(**geom, **radii), wrapper.NormShearPhys(**phys)
-    )
-    yield "Interaction", {**geom, **radii, **phys}, seen
-
-    engine = {"dead": True, "ompThreads": 3}
-    yield "Engine", engine, native.fields_of_engine(wrapper.ForceResetter(**engine))
-
-    drawer = {"dead": True}
-    yield "GlExtraDrawer", drawer, native.fields_of_drawer(wrapper.GlExtraDrawer(**drawer))
-
-    omega = wrapper.Omega()
-    kept = omega.dt, omega.trackEnergy
-    omega.dt, omega.trackEnergy = 2.75, not kept[1]
     try:
-        scene = {"dt": 2.75, "trackEnergy": not kept[1], "iter": omega.iter, "time": omega.time}
-        counted = {name: len(getattr(omega, name)) for name in ("bodies", "materials", "engines")}
-        yield "Scene", {**scene, **counted}, native.fields_of_scene()
-    finally:
-        omega.dt, omega.trackEnergy = kept
+        return importlib.import_module("._membrane", __package__)
+    except ImportError as error:
+        raise ImportError(
+            f"membrane: {built.name} does not fit Python {sys.version.split()[0]} and this YADE "
+            f"{version}: {error}"
+        ) from None
+
+
+def built_for(module):
+    """The release of YADE that an extension module was built for, from its file alone.
+
+    Loading it calls YADE already.
+    """
+    with module.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
+        found = re.search(rb"membrane for YADE ([^\0]+)\0", data)
+        return found[1].decode() if found else "of unknown version"
+
+
+def _systems():
+    """The systems, as Debian 12, by the releases of YADE that can be built for."""
+    rows = (Path(__file__).parent / "releases.txt").read_text(encoding="utf-8").splitlines()
+    cells = (row.split(maxsplit=6) for row in rows if row and not row.startswith("#"))
+    return {row[0]: row[6] for row in cells}

@@ -9,6 +9,7 @@ import time
 from hashlib import sha256
 from pathlib import Path
 
+import yade.config
 from yade.wrapper import Omega
 
 from .files import add_to_sum, flush, read_object, replace_text, settle
@@ -55,7 +56,7 @@ class Checkpoints:
         part.mkdir(parents=True)
         try:
             save_scene(part / SCENE)
-            content = {"state": state, "scene": _sum_of(part / SCENE)}
+            content = {"state": state, "scene": _sum_of(part / SCENE), "yade": _this_yade()}
             replace_text(part / STATE, json.dumps({**content, "sum": _sum(content)}))
             settle(part)
             os.rename(part, self.folder / name)
@@ -70,7 +71,8 @@ class Checkpoints:
     def load(self, is_whole=lambda state: True):
         """Load the scene of the newest one that is whole; returns its state, None if there is none.
 
-        Others are thrown away: the run goes on from an older one, or begins afresh.
+        Others are thrown away: the run goes on from an older one, or begins afresh. So are those
+        of another YADE, whose classes have other attributes.
 
         Parameters
         ----------
@@ -103,10 +105,18 @@ def _whole_state(folder):
         content = read_object(folder / STATE)
         said = content.pop("sum", None)
         if said == _sum(content) and content["scene"] == _sum_of(folder / SCENE):
-            return content["state"]
-    except (OSError, ValueError):
+            if content["yade"] == _this_yade():
+                return content["state"]
+            there, here = content["yade"], _this_yade()
+            print(f"{folder} was saved by YADE {there}; this is {here}, which cannot go on from it")
+    except (OSError, ValueError, KeyError):
         pass
     return None
+
+
+def _this_yade():
+    """Its version."""
+    return yade.config.version.strip()
 
 
 def _sum(content):

@@ -301,8 +301,6 @@ def calculix_deck(nodes, elements, inner, edge, poisson, act):
 
 def run_calculix(deck, count):
     """Displacements (count, 2) [m] and total reaction (2,) [N] that CalculiX prints for a deck."""
-    if not shutil.which("ccx"):
-        raise RuntimeError("CalculiX (ccx) is missing: on Debian 12, apt-get install calculix-ccx")
     with tempfile.TemporaryDirectory(prefix="calculix-") as folder:
         Path(folder, "petal.inp").write_text(deck, encoding="utf-8")
         done = subprocess.run(
@@ -430,7 +428,7 @@ def sheet_checks(refines):
     return found
 
 
-def petal_checks(refines, full):
+def petal_checks(refines, calculix):
     """Displacement and reaction of the petal over those by finite elements, recorded."""
     found = []
     for n in refines:
@@ -438,7 +436,7 @@ def petal_checks(refines, full):
         springs_say = petal_answers(spring_matrix(nodes, triangles), nodes, inner, outer)
         film_says = petal_answers(film_matrix(nodes, triangles), nodes, inner, outer)
         others = {"own triangles": (film_says, CONSTANT_STRAIN, UNCHANGED)}
-        for order, element in ((1, "CPS3"), (2, "CPS6")) if full else ():
+        for order, element in ((1, "CPS3"), (2, "CPS6")) if calculix else ():
             answers = calculix_answers(nodes, triangles, inner, outer, order)
             others[element] = answers, CALCULIX, DIGITS
         for element, (answers, source, tolerance) in others.items():
@@ -467,7 +465,10 @@ def calculix_checks():
 
 
 def checks(full):
-    """Checks of sheets and of the petal; `full`, finer petals too, and CalculiX."""
+    """Checks of sheets and of the petal; `full`, finer petals too, and CalculiX where it is."""
     refines = REFINES if full else FAST_REFINES
-    found = triangle_checks() + sheet_checks(refines) + petal_checks(refines, full)
-    return found + (calculix_checks() if full else [])
+    calculix = full and shutil.which("ccx") is not None
+    if full and not calculix:
+        print("verify: CalculiX (ccx) is not here: what it is to be held against is left out")
+    found = triangle_checks() + sheet_checks(refines) + petal_checks(refines, calculix)
+    return found + (calculix_checks() if calculix else [])

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// Boost 1.74's own headers trip over these two notices.
+// Boost's own headers trip over these two notices.
 #ifndef BOOST_BIND_GLOBAL_PLACEHOLDERS
 #define BOOST_BIND_GLOBAL_PLACEHOLDERS
 #endif
@@ -16,12 +16,15 @@
 #include <cstddef>
 #include <string>
 
-// What the layout of Debian's libyade 2023.02a-1 rests on, as far as a compiler can be asked.
+// What the layout of Debian's libyade rests on, as far as a compiler can be asked.
+#ifndef YADE_ABI_RELEASE
+#error "Compile with -DYADE_ABI_RELEASE=<column abi of yade-abi/releases.txt>, of the YADE that will load this."
+#endif
 #if !defined(EIGEN_DONT_ALIGN) && !defined(EIGEN_DONT_VECTORIZE)
 #error "Compile with -DEIGEN_DONT_ALIGN: Debian's YADE does not align Eigen types, and State would differ in size."
 #endif
 #if !defined(__x86_64__) || !defined(__linux__)
-#error "These declarations describe Debian's amd64 build of YADE 2023.02a only."
+#error "These declarations describe Debian's amd64 build of YADE only."
 #endif
 #if !_GLIBCXX_USE_CXX11_ABI
 #error "Debian's YADE uses the new string ABI: compile with _GLIBCXX_USE_CXX11_ABI=1, the default."

@@ -22,6 +22,9 @@ public:
 
     Shape() : color(1, 1, 1), wire(false), highlight(false) {}
     YADE_ABI_SERIALIZABLE
+#if YADE_ABI_RELEASE >= 202601
+    virtual Real getVolume();
+#endif
     YADE_ABI_TOP_INDEXABLE
 };
 

@@ -13,6 +13,9 @@ public:
     Sphere(Real radius_) : Sphere() { radius = radius_; }
     virtual ~Sphere();
     YADE_ABI_SERIALIZABLE
+#if YADE_ABI_RELEASE >= 202601
+    Real getVolume() override;
+#endif
     YADE_ABI_INDEXABLE
 };
 

@@ -10,6 +10,9 @@ namespace yade {
 class FrictPhys : public NormShearPhys {
 public:
     Real tangensOfFrictionAngle;
+#if YADE_ABI_RELEASE >= 202601
+    Real frictDissip;
+#endif
 
     FrictPhys();
     virtual ~FrictPhys();
@@ -17,7 +20,11 @@ public:
     YADE_ABI_INDEXABLE
 };
 
+#if YADE_ABI_RELEASE >= 202601
+YADE_ABI_LAYOUT(FrictPhys, 112, ((tangensOfFrictionAngle, 96))((frictDissip, 104)));
+#else
 YADE_ABI_LAYOUT(FrictPhys, 104, ((tangensOfFrictionAngle, 96)));
+#endif
 YADE_ABI_SAVED(FrictPhys)
 
 } // namespace yade
