@@ -15,8 +15,8 @@ folder = Path(sys.argv[1])
 own = hasattr(wrapper, "Membrane")  # YADE's own, before anything of ours is imported
 with patch.object(config, "version", "of tomorrow" if own else config.version):
     import membrane
-from membrane import _load, sail
-from membrane.parameters import SailParameters
+    from membrane import _load, sail
+    from membrane.parameters import SailParameters
 
 facts = {
     "package": membrane.__file__,
