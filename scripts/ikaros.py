@@ -18,7 +18,7 @@ that spin, and must end at 2.5 rpm; with `--spin 2.5` it ends at 1.1 rpm.
 
 import argparse
 from dataclasses import fields, replace
-from math import pi
+from math import cos, pi, radians, sin
 from pathlib import Path
 
 import numpy as np
@@ -31,6 +31,7 @@ from membrane.results.unfinished import new_results
 
 with plain_errors("ikaros"):
     from matplotlib.figure import Figure
+    import membrane
     from membrane.run import sail
     from membrane.run.record import Recorder
     from membrane.scene import hub
@@ -42,6 +43,7 @@ RPM = 2 * pi / 60
 THICKNESS = 7.5e-6  # m, of the polyimide film
 AREAL_MASS = 0.081  # kg/m2, with solar cells and liquid-crystal devices
 HUB_INERTIA = 67.0  # kg m2, of the body, fitted to the spin from 25 to 2.5 rpm in stage 1
+SUNLIGHT = {"specular": 0.83, "diffuse": 0.05}  # shares of an aluminised film, McInnes 1999, 2.6
 FLIGHT_SPIN = 2.5  # rpm, with the arms out, and again after stage 2
 FLIGHT_CROSS = 779.0  # kg m2, of body and arms of 10 m, by the same fit; the flat sail's is 780
 STEP = 0.5  # of the critical time step
@@ -86,10 +88,23 @@ def command_line():
         metavar="RPM",
         help="spin before stage 2, > 0 (default: that with the angular momentum of the flight)",
     )
+    parser.add_argument(
+        "--sun",
+        type=float,
+        metavar="DEG",
+        help="let sunlight press on the film, at this angle from the spin axis (default: no light)",
+    )
     for item in fields(SailParameters):
         if item.name in OPTIONS:
             add_argument(parser, item, getattr(IKAROS, item.name))
     return parser.parse_args()
+
+
+def shine(net, angle):
+    """Add sunlight to the scene's engines, `angle` [deg] from the spin axis, from above."""
+    direction = (sin(radians(angle)), 0, -cos(radians(angle)))
+    light = membrane.SolarPressure(membrane=net, direction=direction, **SUNLIGHT)
+    Omega().engines = [light, *Omega().engines]
 
 
 def draw(mesh, recorder, history, rigid, path):
@@ -153,9 +168,19 @@ def report(p, history, rigid):
     }
 
 
-def deploy(p, spin, folder):
-    """Do it all; returns what is written to summary.json. `spin` [rpm] or None: that of flight."""
+def deploy(p, spin, folder, sun=None):
+    """Do it all; returns what is written to summary.json.
+
+    Parameters
+    ----------
+    spin : float or None
+        Before stage 2 [rpm]; None: with the angular momentum of the flight.
+    sun : float or None
+        Angle of sunlight from the spin axis [deg]; None: no light.
+    """
     mesh, built = sail.build(p)
+    if sun is not None:
+        shine(built.membrane, sun)
     critical = built.forces.criticalTimeStep()
     p = replace(p, dt=STEP * critical, omega=(FLIGHT_SPIN if spin is None else spin) * RPM)
     sail.spin_up(built, p)
@@ -172,6 +197,9 @@ def deploy(p, spin, folder):
     history = recorder.columns()
     rigid = history["angular_momentum"] / history["inertia"] / RPM
     summary = {"critical_time_step": critical, **report(p, history, rigid)}
+    if sun is not None:
+        light = {"angle": sun, "work": built.ledger.workOf("sunlight"), **SUNLIGHT}
+        summary["sunlight"] = light
     write_json(folder / "summary.json", summary)
     draw(mesh, recorder, history, rigid, folder / "ikaros.png")
     sail.write_page(folder)
@@ -183,7 +211,7 @@ def main():
     arguments = command_line()
     given = {name: getattr(arguments, name) for name in OPTIONS}
     with new_results(arguments.out) as part:
-        found = deploy(replace(IKAROS, **given), arguments.spin, part)
+        found = deploy(replace(IKAROS, **given), arguments.spin, part, arguments.sun)
     spin = found["spin_rpm"]
     print(
         f"Spin {spin['before']:.2f} rpm before, {spin['after']:.2f} rpm after, "

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
-#include "pkg/membrane/mechanics/LinearForces.hpp"
+#include "pkg/membrane/kernels/CreaseKernel.hpp"
+#include "pkg/membrane/kernels/SideKernel.hpp"
 #include "shapes.hpp"
 #include <Eigen/Eigenvalues>
 
@@ -71,7 +72,16 @@ inline double criticalStep(const LinearForces& forces) {
     return step;
 }
 
-/// A sheet with all that bears on the time step, and the references that TimeStepInput needs.
+/// Of something with a rest state, positions and masses of its nodes, coefficients of damping and drag, a crease law.
+template <class Model> LinearForces linearForces(const Model& m) {
+    LinearForces all(m.masses);
+    membrane::SideForces(m.rest, m.damping).addTo(all, m.positions, m.positions);
+    if (m.crease.bending > 0.) membrane::CreaseForce(m.rest, m.crease).addTo(all, m.positions, m.positions);
+    for (std::size_t i = 0; i < m.drag.size(); ++i) all.addDrag(static_cast<int>(i), m.drag[i]);
+    return all;
+}
+
+/// A sheet with all that bears on the time step.
 struct Sheet {
     membrane::RestState rest;
     membrane::Points positions;
@@ -98,7 +108,7 @@ struct Sheet {
         masses[0] = masses[11] = 0.; // held
     }
 
-    membrane::TimeStepInput input() const { return {rest, masses, positions, damping, drag, crease}; }
+    LinearForces forces() const { return linearForces(*this); }
 };
 
 /// Calls a test with sheets in which stiffness, damping or creases decide the step.

@@ -42,7 +42,7 @@ struct Hinge {
     double heightC = 0.8, heightD = 0.8; ///< of C and D over AB
     double footC = 0.4, footD = 0.7;     ///< where those heights meet AB: 0 at A, 1 at B
     double theta = 1.;                   ///< 0 closed, pi flat
-    double sign = 1.;                    ///< +1 valley, -1 mountain, seen from +z when flat
+    double sign = 1.;                    ///< +1 mountain, -1 valley, seen from +z when flat
 
     /// Rest data, for a law that acts in other states too.
     membrane::CreaseRest rest() const { return {length, heightC, heightD, sign}; }
@@ -50,7 +50,7 @@ struct Hinge {
     /// Positions of A, B, C, D: AB along x, ABC in the plane z = 0, D raised from -y by pi - theta.
     Points nodes() const {
         return {Vector3d(0., 0., 0.), Vector3d(length, 0., 0.), Vector3d(footC * length, heightC, 0.),
-                Vector3d(footD * length, heightD * std::cos(theta), sign * heightD * std::sin(theta))};
+                Vector3d(footD * length, heightD * std::cos(theta), -sign * heightD * std::sin(theta))};
     }
 };
 

@@ -117,10 +117,10 @@ TEST(CreaseState, MountainAndValleySeeTheSameStateFromOppositeSides) {
     for (double theta : angles) {
         h.theta = theta;
         const Points x = h.nodes();
-        CreaseRest mountain = h.rest();
-        mountain.sign = -1.;
+        CreaseRest valley = h.rest();
+        valley.sign = -1.;
         const double expected = theta < 0.5 * pi ? -theta : 2. * pi - theta;
-        EXPECT_NEAR(stateOf(mountain, x).theta, expected, 1e-13);
+        EXPECT_NEAR(stateOf(valley, x).theta, expected, 1e-13);
     }
 }
 

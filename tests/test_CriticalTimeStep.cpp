@@ -34,7 +34,7 @@ struct Model {
             damping.push_back(dampingCoefficient(ratio, s.stiffness, 0.5 * (masses[s.a] + masses[s.b])));
     }
 
-    double estimate() const { return criticalTimeStep({rest, masses, positions, damping, drag, crease}); }
+    double estimate() const { return criticalTimeStep(dense::linearForces(*this)); }
 
     Points forces(const Points& x) const {
         Points f(x.size(), Vector3d::Zero());
@@ -314,7 +314,7 @@ TEST(CriticalTimeStep, IsProportionalToTheSizeOfTheSheet) {
 
 TEST(CriticalTimeStep, IsOnePercentBelowTheDenseStepOfItsMatrices) {
     dense::forSheets([](const dense::Sheet& sheet) {
-        const double share = criticalTimeStep(sheet.input()) / dense::criticalStep(linearForces(sheet.input()));
+        const double share = criticalTimeStep(sheet.forces()) / dense::criticalStep(sheet.forces());
         EXPECT_LE(share, 0.99 * (1. + 1e-4));
         EXPECT_GE(share, 0.99 * (1. - 2e-3));
     });
@@ -324,15 +324,15 @@ TEST(CriticalTimeStep, CountsDampingThatActsElsewhereThanStiffness) {
     // Springs without dampers in one half and the other way round: which half decides depends on the step.
     for (double share : {0.5, 0.8, 0.95, 1., 1.05, 1.2, 2.}) {
         dense::Sheet sheet(7, 1e-3, 0., 0.);
-        const double stiff = dense::criticalStep(linearForces(sheet.input()));
+        const double stiff = dense::criticalStep(sheet.forces());
         sheet.damping.assign(sheet.rest.sides.size(), 0.);
         for (std::size_t i = 0; i < sheet.damping.size() / 2; ++i) {
             sheet.rest.sides[i].stiffness = 0.;
             sheet.damping[i] = 1.;
         }
-        const double damped = dense::criticalStep(linearForces(sheet.input()));
+        const double damped = dense::criticalStep(sheet.forces());
         for (double& c : sheet.damping) c *= damped / (share * stiff);
-        const double ratio = criticalTimeStep(sheet.input()) / dense::criticalStep(linearForces(sheet.input()));
+        const double ratio = criticalTimeStep(sheet.forces()) / dense::criticalStep(sheet.forces());
         EXPECT_LE(ratio, 0.99 * (1. + 1e-4)) << "share " << share;
         EXPECT_GE(ratio, 0.99 * (1. - 2e-3)) << "share " << share;
     }
@@ -340,20 +340,20 @@ TEST(CriticalTimeStep, CountsDampingThatActsElsewhereThanStiffness) {
 
 TEST(CriticalTimeStep, IsTheLongestStepWithin) {
     dense::forSheets([](const dense::Sheet& sheet) {
-        const double step = criticalTimeStep(sheet.input());
+        const double step = criticalTimeStep(sheet.forces());
         for (double share : {1e-6, 0.3, 0.7, 0.95, 1.})
-            EXPECT_TRUE(withinCriticalTimeStep(sheet.input(), share * step));
-        EXPECT_FALSE(withinCriticalTimeStep(sheet.input(), std::nextafter(step, infinity)));
-        EXPECT_FALSE(withinCriticalTimeStep(sheet.input(), 2. * step));
-        EXPECT_FALSE(withinCriticalTimeStep(sheet.input(), infinity));
-        EXPECT_FALSE(withinCriticalTimeStep(sheet.input(), std::nan("")));
+            EXPECT_TRUE(withinCriticalTimeStep(sheet.forces(), share * step));
+        EXPECT_FALSE(withinCriticalTimeStep(sheet.forces(), std::nextafter(step, infinity)));
+        EXPECT_FALSE(withinCriticalTimeStep(sheet.forces(), 2. * step));
+        EXPECT_FALSE(withinCriticalTimeStep(sheet.forces(), infinity));
+        EXPECT_FALSE(withinCriticalTimeStep(sheet.forces(), std::nan("")));
     });
 }
 
 TEST(CriticalTimeStep, RepeatsToTheLastDigit) {
     dense::forSheets([](const dense::Sheet& sheet) {
         const dense::Sheet same = sheet;
-        EXPECT_EQ(criticalTimeStep(sheet.input()), criticalTimeStep(same.input()));
+        EXPECT_EQ(criticalTimeStep(sheet.forces()), criticalTimeStep(same.forces()));
     });
 }
 
@@ -361,11 +361,8 @@ TEST(CriticalTimeStep, IsInfiniteIfNothingCanMoveOrNothingPulls) {
     Model held(shapes::sheet(2, 2, 0., 48, false), 0.02);
     held.hold({0, 1, 2, 3, 4, 5, 6, 7, 8});
     EXPECT_EQ(held.estimate(), infinity);
-    const RestState nothing;
-    EXPECT_EQ(criticalTimeStep({nothing, {}, {}, {}, {}, {}}), infinity);
-    const std::vector<double> masses{1., 1.};
-    const Points apart{Vector3d::Zero(), Vector3d::UnitX()};
-    EXPECT_EQ(criticalTimeStep({nothing, masses, apart, {}, {}, {}}), infinity);
+    EXPECT_EQ(criticalTimeStep(LinearForces({})), infinity);
+    EXPECT_EQ(criticalTimeStep(LinearForces({1., 1.})), infinity);
 }
 
 } // namespace

@@ -26,7 +26,7 @@ Eigen::MatrixXd columns(const LinearForces& forces, double k, double c) {
 
 TEST(LinearForces, ProductsAreThoseOfTheMatrices) {
     dense::forSheets([](const dense::Sheet& sheet) {
-        const LinearForces forces = linearForces(sheet.input());
+        const LinearForces forces = sheet.forces();
         const Eigen::MatrixXd k = dense::stiffness(forces), c = dense::damping(forces);
         EXPECT_LT((columns(forces, 1., 0.) - k).norm(), 1e-13 * k.norm());
         EXPECT_LE((columns(forces, 0., 1.) - c).norm(), 1e-13 * c.norm());
@@ -36,7 +36,7 @@ TEST(LinearForces, ProductsAreThoseOfTheMatrices) {
 
 TEST(LinearForces, ProductsAreAdded) {
     const dense::Sheet sheet(1, 1e-3, 10., 1.);
-    const LinearForces forces = linearForces(sheet.input());
+    const LinearForces forces = sheet.forces();
     const NodeVectors x(sheet.masses.size(), {1., -2., 3., 0.});
     NodeVectors once(x.size(), Eigen::Vector4d::Zero()), twice = once;
     addProduct(forces, 1., 1., x, once);
@@ -52,14 +52,14 @@ TEST(LinearForces, ProductsAreAdded) {
 
 TEST(LinearForces, AreDampedIfAnythingIs) {
     dense::Sheet sheet(2, 0., 10., 0.);
-    EXPECT_TRUE(linearForces(sheet.input()).damped);
+    EXPECT_TRUE(sheet.forces().damped);
     sheet.drag.clear();
-    EXPECT_TRUE(linearForces(sheet.input()).damped);
+    EXPECT_TRUE(sheet.forces().damped);
     sheet.damping.assign(sheet.damping.size(), 0.);
-    EXPECT_FALSE(linearForces(sheet.input()).damped);
+    EXPECT_FALSE(sheet.forces().damped);
     sheet.drag.assign(sheet.masses.size(), 0.);
     sheet.drag.back() = 1e-9;
-    EXPECT_TRUE(linearForces(sheet.input()).damped);
+    EXPECT_TRUE(sheet.forces().damped);
 }
 
 } // namespace

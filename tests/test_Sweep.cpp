@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // All forces, energies and the leapfrog in one sweep, against plain loops over the functions of the mechanics.
+#include "pkg/membrane/kernels/CreaseKernel.hpp"
+#include "pkg/membrane/kernels/DragKernel.hpp"
+#include "pkg/membrane/kernels/SideKernel.hpp"
 #include "pkg/membrane/kernels/Sweep.hpp"
 #include "pkg/membrane/mechanics/Damping.hpp"
 #include "pkg/membrane/mechanics/Drag.hpp"
@@ -17,6 +20,13 @@ namespace {
 constexpr double dt = 1e-6;
 const int partCounts[] = {1, 2, 3, 5};
 const int chunkSizes[] = {1, 7, 64, 512};
+
+/// Which forces act, besides those of the sides.
+struct Laws {
+    std::vector<double> damping; ///< c of each side [N s/m]; empty: none
+    CreaseLaw crease;            ///< bending = 0: none
+    double airDensity = 0.;      ///< [kg/m³]; 0: none
+};
 
 /// A sheet in motion, with everything that can act on it.
 struct Model {
@@ -80,9 +90,16 @@ struct Model {
     }
     Model& withAll(bool conservative = false) { return withDamping().withCreases(conservative).withDrag(); }
 
+    ElementForces forces() const {
+        ElementForces all{std::make_shared<SideForces>(rest, laws.damping)};
+        if (laws.crease.bending > 0.) all.push_back(std::make_shared<CreaseForce>(rest, laws.crease));
+        if (laws.airDensity > 0.) all.push_back(std::make_shared<DragForce>(in.triangles, laws.airDensity));
+        return all;
+    }
+
     Sweep sweep(int parts = 1, int chunkSize = 512) const {
         Sweep made;
-        made.prepare(rest, in.triangles, laws, rest.masses, owned, parts, chunkSize);
+        made.prepare(forces(), rest.masses, owned, parts, chunkSize);
         for (std::size_t i = 0; i < x.size(); ++i) {
             made.x.set(i, x[i]);
             made.v.set(i, v[i]);
@@ -98,7 +115,7 @@ struct Plain {
     Points x, v, u;
     Points elastic, damping, crease, drag;
     std::vector<double> lengths;
-    SideEnergy energy;
+    GroupEnergy energy;
     MotionSums sums;
 
     explicit Plain(const Model& m) : model(m), x(m.x), v(m.v), u(m.v) {}
@@ -266,9 +283,11 @@ TEST(Sweep, ForcesAreThoseOfPlainLoops) {
                     ASSERT_TRUE(sweep.step(still(true))) << times;
                     EXPECT_LT(difference(total, [&](int i) { return sweep.force(i); }), 1e-12);
                     EXPECT_LT(difference(plain.elastic, [&](int i) { return sweep.elasticForce(i); }), 1e-12);
-                    EXPECT_LT(difference(plain.damping, [&](int i) { return sweep.dampingForce(i); }), 1e-12);
-                    EXPECT_LT(difference(plain.crease, [&](int i) { return sweep.creaseForce(i); }), 1e-12);
-                    EXPECT_LT(difference(plain.drag, [&](int i) { return sweep.dragForce(i); }), 1e-12);
+                    EXPECT_LT(difference(plain.damping, [&](int i) { return sweep.channelForce(dampingChannel, i); }),
+                              1e-12);
+                    EXPECT_LT(difference(plain.crease, [&](int i) { return sweep.channelForce(creaseChannel, i); }),
+                              1e-12);
+                    EXPECT_LT(difference(plain.drag, [&](int i) { return sweep.channelForce(dragChannel, i); }), 1e-12);
                 }
             }
     }
@@ -284,9 +303,9 @@ TEST(Sweep, WithoutSpringsOnlyTheOtherForcesAreLeft) {
         Sweep sweep = m.sweep(parts, 64);
         sweep.step(now);
         for (std::size_t i = 0; i < m.x.size(); ++i) EXPECT_EQ(sweep.elasticForce(i), Vector3d::Zero());
-        EXPECT_LT(difference(plain.damping, [&](int i) { return sweep.dampingForce(i); }), 1e-12);
-        EXPECT_LT(difference(plain.crease, [&](int i) { return sweep.creaseForce(i); }), 1e-12);
-        EXPECT_LT(difference(plain.drag, [&](int i) { return sweep.dragForce(i); }), 1e-12);
+        EXPECT_LT(difference(plain.damping, [&](int i) { return sweep.channelForce(dampingChannel, i); }), 1e-12);
+        EXPECT_LT(difference(plain.crease, [&](int i) { return sweep.channelForce(creaseChannel, i); }), 1e-12);
+        EXPECT_LT(difference(plain.drag, [&](int i) { return sweep.channelForce(dragChannel, i); }), 1e-12);
     }
 }
 
@@ -300,7 +319,7 @@ TEST(Sweep, EnergiesKinksAndSumsAreThoseOfPlainLoops) {
                 for (const Side& s : m.rest.sides) // where the nodes were a step ago, as far as is known
                     plain.lengths.push_back(((m.x[s.b] - dt * m.v[s.b]) - (m.x[s.a] - dt * m.v[s.a])).norm());
                 Sweep sweep = m.sweep(parts, chunkSize);
-                EXPECT_TRUE(sweep.lengths().empty());
+                EXPECT_TRUE(sweep.memory().empty());
                 SweepStep now = moving(Sums::energies);
                 now.gravity = Vector3d(3., -2., 9.81);
                 for (int step = 0; step < 3; ++step) {
@@ -308,9 +327,9 @@ TEST(Sweep, EnergiesKinksAndSumsAreThoseOfPlainLoops) {
                     plain.move(now);
                     ASSERT_TRUE(sweep.step(now));
                     const MotionSums& sums = sweep.motionSums();
-                    EXPECT_LT(relative(sweep.sideEnergies().elastic, plain.energy.elastic), 1e-11);
+                    EXPECT_LT(relative(sweep.elementEnergies().elastic, plain.energy.elastic), 1e-11);
                     EXPECT_GT(std::abs(plain.energy.kink), 1e-8 * plain.energy.elastic) << "no side has a kink";
-                    EXPECT_LT(relative(sweep.sideEnergies().kink, plain.energy.kink), 1e-8);
+                    EXPECT_LT(relative(sweep.elementEnergies().kink, plain.energy.kink), 1e-8);
                     EXPECT_LT(relative(sums.kinetic, plain.sums.kinetic), 1e-12);
                     EXPECT_LT(relative(sums.potential, plain.sums.potential), 1e-12);
                     EXPECT_LT(relative(sums.angularMomentum, plain.sums.angularMomentum), 1e-10);
@@ -319,7 +338,7 @@ TEST(Sweep, EnergiesKinksAndSumsAreThoseOfPlainLoops) {
                         EXPECT_LT(relative(sums.arriving[k], plain.sums.arriving[k]), 1e-10) << k;
                         EXPECT_LT(relative(sums.power[k], plain.sums.power[k]), 1e-10) << k;
                     }
-                    const std::vector<double> lengths = sweep.lengths();
+                    const std::vector<double> lengths = sweep.memory();
                     ASSERT_EQ(lengths.size(), plain.lengths.size());
                     for (std::size_t i = 0; i < lengths.size(); ++i)
                         EXPECT_LT(relative(lengths[i], plain.lengths[i]), 1e-12);
@@ -335,15 +354,15 @@ TEST(Sweep, GivenLengthsAreThoseFromWhichKinksAreCounted) {
         shapes::Random random(3);
         for (const Side& s : m.rest.sides) plain.lengths.push_back(s.critical * random.between(0.99, 1.01));
         Sweep sweep = m.sweep(parts, 64);
-        sweep.setLengths(plain.lengths);
-        const std::vector<double> kept = sweep.lengths();
+        sweep.setMemory(plain.lengths);
+        const std::vector<double> kept = sweep.memory();
         EXPECT_EQ(kept, plain.lengths);
         plain.computeForces();
         sweep.step(still(true, Sums::energies));
-        EXPECT_LT(relative(sweep.sideEnergies().kink, plain.energy.kink), 1e-11);
+        EXPECT_LT(relative(sweep.elementEnergies().kink, plain.energy.kink), 1e-11);
         sweep.step(still()); // no sums: the lengths are no longer those of the step before
-        EXPECT_FALSE(sweep.hasLengths());
-        EXPECT_TRUE(sweep.lengths().empty());
+        EXPECT_FALSE(sweep.remembers());
+        EXPECT_TRUE(sweep.memory().empty());
     }
 }
 
@@ -415,8 +434,8 @@ TEST(Sweep, WorksAreTheSameBitsWithAndWithoutEnergies) {
                     EXPECT_EQ(one.power[k], other.power[k]);
                 }
                 EXPECT_EQ(one.torque, other.torque);
-                EXPECT_NE(works.sideEnergies().kink, 0.);
-                EXPECT_EQ(works.sideEnergies().kink, energies.sideEnergies().kink);
+                EXPECT_NE(works.elementEnergies().kink, 0.);
+                EXPECT_EQ(works.elementEnergies().kink, energies.elementEnergies().kink);
             }
         }
 }
@@ -434,7 +453,7 @@ TEST(Sweep, SamePartsGiveTheSameBitsAndOthersNearlyTheSame) {
             const Sweep one = run(parts), other = run(parts);
             EXPECT_TRUE(sameBits(one, other)) << parts;
             EXPECT_EQ(one.motionSums().kinetic, other.motionSums().kinetic);
-            EXPECT_EQ(one.sideEnergies().elastic, other.sideEnergies().elastic);
+            EXPECT_EQ(one.elementEnergies().elastic, other.elementEnergies().elastic);
             EXPECT_LT(difference(alone.x.points(), [&](int i) { return one.x.at(i); }), 1e-13);
             EXPECT_LT(difference(alone.v.points(), [&](int i) { return one.v.at(i); }), 1e-12);
         }
@@ -525,7 +544,7 @@ TEST(Sweep, PreparedAnewItKeepsItsStateAndTakesTheNewLaws) {
     const Points x = sweep.x.points(), v = sweep.v.points(), u = sweep.u.points();
     m.laws = Laws();
     m.withDamping(0.2);
-    sweep.prepare(m.rest, m.in.triangles, m.laws, m.rest.masses, m.owned, 3, 7);
+    sweep.prepare(m.forces(), m.rest.masses, m.owned, 3, 7);
     EXPECT_EQ(sweep.x.points(), x);
     EXPECT_EQ(sweep.v.points(), v);
     EXPECT_EQ(sweep.u.points(), u);
@@ -534,10 +553,10 @@ TEST(Sweep, PreparedAnewItKeepsItsStateAndTakesTheNewLaws) {
     plain.computeForces();
     sweep.step(still(true));
     EXPECT_LT(difference(plain.elastic, [&](int i) { return sweep.elasticForce(i); }), 1e-12);
-    EXPECT_LT(difference(plain.damping, [&](int i) { return sweep.dampingForce(i); }), 1e-12);
+    EXPECT_LT(difference(plain.damping, [&](int i) { return sweep.channelForce(dampingChannel, i); }), 1e-12);
     for (std::size_t i = 0; i < x.size(); ++i) {
-        EXPECT_EQ(sweep.creaseForce(i), Vector3d::Zero());
-        EXPECT_EQ(sweep.dragForce(i), Vector3d::Zero());
+        EXPECT_EQ(sweep.channelForce(creaseChannel, i), Vector3d::Zero());
+        EXPECT_EQ(sweep.channelForce(dragChannel, i), Vector3d::Zero());
     }
 }
 
@@ -554,14 +573,15 @@ TEST(Sweep, SharedConstantsOfARegularSheetChangeNoForce) {
         for (double* constant : {&s.restLength, &s.stiffness, &s.critical, &m.laws.damping[i]})
             *constant *= 1. + random.between(-1e-13, 1e-13);
     }
-    const SideTable table = sideTable(m.rest, m.laws.damping, partition(static_cast<int>(m.x.size()), 1, 512));
-    EXPECT_LT(table.stiffness.size(), 3 * table.order.size() / 4) << "nothing is shared";
+    SideForces sides(m.rest, m.laws.damping);
+    sides.arrange(partition(static_cast<int>(m.x.size()), 1, 512));
+    EXPECT_LT(sides.constantCount(), 3 * sides.order().size() / 4) << "nothing is shared";
     Plain plain(m);
     plain.computeForces();
     Sweep sweep = m.sweep();
     sweep.step(still(true));
     EXPECT_LT(difference(plain.elastic, [&](int i) { return sweep.elasticForce(i); }), 1e-9);
-    EXPECT_LT(difference(plain.damping, [&](int i) { return sweep.dampingForce(i); }), 1e-9);
+    EXPECT_LT(difference(plain.damping, [&](int i) { return sweep.channelForce(dampingChannel, i); }), 1e-9);
 }
 
 TEST(Sweep, SidesThatDifferABitMoreKeepTheirOwnConstants) {
@@ -578,7 +598,8 @@ TEST(Sweep, SidesThatDifferABitMoreKeepTheirOwnConstants) {
         Sweep sweep = m.sweep();
         sweep.step(still(true));
         EXPECT_LT(difference(plain.elastic, [&](int i) { return sweep.elasticForce(i); }), 1e-12) << which;
-        EXPECT_LT(difference(plain.damping, [&](int i) { return sweep.dampingForce(i); }), 1e-12) << which;
+        EXPECT_LT(difference(plain.damping, [&](int i) { return sweep.channelForce(dampingChannel, i); }), 1e-12)
+            << which;
     }
 }
 
@@ -611,9 +632,9 @@ TEST(Sweep, CoincidingNodesAndCollapsedElementsGiveFiniteNumbers) {
             ASSERT_TRUE(sweep.step(still(true, Sums::energies)));
             for (std::size_t i = 0; i < m.x.size(); ++i) EXPECT_TRUE(sweep.force(i).allFinite()) << i;
             EXPECT_LT(difference(plain.elastic, [&](int i) { return sweep.elasticForce(i); }), 1e-12);
-            EXPECT_LT(difference(plain.crease, [&](int i) { return sweep.creaseForce(i); }), 1e-7);
-            EXPECT_TRUE(std::isfinite(sweep.sideEnergies().elastic));
-            EXPECT_TRUE(std::isfinite(sweep.sideEnergies().kink));
+            EXPECT_LT(difference(plain.crease, [&](int i) { return sweep.channelForce(creaseChannel, i); }), 1e-7);
+            EXPECT_TRUE(std::isfinite(sweep.elementEnergies().elastic));
+            EXPECT_TRUE(std::isfinite(sweep.elementEnergies().kink));
             for (int step = 0; step < 3; ++step) EXPECT_TRUE(sweep.step(moving(Sums::energies)));
             EXPECT_TRUE(std::isfinite(sweep.motionSums().kinetic));
         }

@@ -12,21 +12,16 @@ namespace {
 
 /// Nodes on a line, joined by sides of stiffness 100 N/m and damping `damping` [N s/m]; masses [kg].
 LinearForces chain(const std::vector<double>& masses, double damping) {
-    LinearForces forces;
-    for (std::size_t i = 0; i < masses.size(); ++i) {
-        if (i > 0)
-            forces.sides.push_back(
-                {static_cast<int>(i) - 1, static_cast<int>(i), Eigen::Vector3d::UnitY(), 100., 0., damping});
-        forces.inverseRoot.push_back(masses[i] > 0. ? 1. / std::sqrt(masses[i]) : 0.);
-    }
-    forces.damped = damping > 0.;
+    LinearForces forces(masses);
+    for (int i = 1; i < static_cast<int>(masses.size()); ++i)
+        forces.addSide({i - 1, i, Eigen::Vector3d::UnitY(), 100., 0., damping});
     return forces;
 }
 
 TEST(TimeStepBound, IsNeverAboveTheDenseStepAndWorthHaving) {
     double least = 1.;
     dense::forSheets([&least](const dense::Sheet& sheet) {
-        const LinearForces forces = linearForces(sheet.input());
+        const LinearForces forces = sheet.forces();
         const double share = timeStepBound(forces).step / dense::criticalStep(forces);
         EXPECT_LE(share, 1. + 1e-12);
         EXPECT_GE(share, 0.6);

@@ -52,6 +52,11 @@ SETTINGS = {
     "MembraneFault": {"dead": True},
     "GlExtra_Membrane": {"strainRange": 1e-4, "wire": True, "dead": True},
 }
+FORCE = ("GlobalEngine", "Engine")
+for name in _load.CLASSES:  # further forces
+    if issubclass(getattr(membrane, name), membrane.MembraneForce):
+        BASES[name] = FORCE if name == "MembraneForce" else ("MembraneForce", *FORCE)
+        SETTINGS[name] = {"dead": True}
 if not VIEW:
     del BASES["GlExtra_Membrane"]
 NUMBERS = ("Real", "Vector3r", "vector<Real>", "vector<Vector3r>")

@@ -33,6 +33,23 @@ class TestIkaros(CommandTest):
         self.assertGreater((folder / "ikaros.png").stat().st_size, 50_000)
         self.assertEqual(found["versions"], sail.versions())
 
+    def test_sunlight_presses_on_the_film(self):
+        sun = run_yade(
+            self.SCRIPT,
+            "--out",
+            scratch() / "lit",
+            "--duration",
+            "0.5",
+            "--fold-lines",
+            "4",
+            "--sun",
+            "30",
+        )
+        self.assertEqual(sun.returncode, 0, sun.stderr)
+        found = json.loads((scratch() / "lit" / "summary.json").read_text())
+        self.assertNotEqual(found["sunlight"]["work"], 0)
+        self.assertLess(found["largest_unexplained_energy"], 1e-4 * found["kinetic_energy_before"])
+
     def test_a_run_that_goes_wrong_leaves_its_last_good_state(self):
         """The watch is told to stop at what is rounding."""
         O.reset()
@@ -77,6 +94,15 @@ class TestGuide(unittest.TestCase):
         sheet, ball = map(float, heights[-1])
         self.assertAlmostEqual(sheet, -17, delta=0.5)  # a node's radius above the floor
         self.assertAlmostEqual(ball, -17 + 13, delta=5)  # both radii above that, or bouncing
+
+    def test_a_jet_carries_a_sheet(self):
+        said = self.run_script("### Add a force")
+        middle, corner, height = map(float, re.findall(r"(-?[\d.]+) mm", said))
+        self.assertGreater(middle, corner + 1)  # it hangs over the jet
+        self.assertLess(abs(height), 1e-6)
+        work, unexplained = map(float, re.findall(r"(\S+) J", said))
+        self.assertGreater(work, 0)
+        self.assertLess(abs(unexplained), 1e-6 * work)
 
     def test_its_own_mesh_opens_and_keeps_its_energy(self):
         said = self.run_script("## 5. Your own mesh")

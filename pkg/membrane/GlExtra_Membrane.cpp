@@ -238,10 +238,8 @@ void GlExtra_Membrane::paintCreases(const Shape& shape) const {
     glLineWidth(3.f);
     glBegin(GL_LINES);
     for (const ::membrane::Crease& c : shape.membrane->rest().creases) {
-        const auto& x = shape.x;
-        const Real angle = ::membrane::creaseState(c.rest, x[c.a], x[c.b], x[c.c], x[c.d]).theta;
-        colour(colourOf(creaseColours, angle / Mathr::PI));
-        line(x[c.a], x[c.b]);
+        colour(colourOf(creaseColours, ::membrane::creaseState(c, shape.x).theta / Mathr::PI));
+        line(shape.x[c.a], shape.x[c.b]);
     }
     glEnd();
 }

@@ -5,9 +5,13 @@
 #include "Exactly.hpp"
 #include "FreeHub.hpp"
 #include "MembraneFault.hpp"
+#include "MembraneForce.hpp"
 #include "MembraneLedger.hpp"
-#include "TimeStepState.hpp"
+#include "kernels/CreaseKernel.hpp"
+#include "kernels/DragKernel.hpp"
+#include "kernels/SideKernel.hpp"
 #include "mechanics/CriticalTimeStep.hpp"
+#include "mechanics/Damping.hpp"
 #include <cmath>
 #include <core/InteractionContainer.hpp>
 #include <core/Omega.hpp>
@@ -30,6 +34,17 @@ template <class Value> [[noreturn]] void refuse(const char* field, const Value& 
 
 void requireNotNegative(const char* field, Real value) {
     if (!(value >= 0.) || !std::isfinite(value)) refuse(field, value, "finite and >= 0");
+}
+
+/// Coefficients (9) of the sides [N s/m], from the masses of the nodes' bodies; empty without damping.
+vector<Real> dampingCoefficients(const Membrane& membrane, const vector<shared_ptr<Body>>& bodies, Real zeta) {
+    vector<Real> c;
+    if (!(zeta > 0.)) return c;
+    c.reserve(membrane.rest().sides.size());
+    for (const ::membrane::Side& s : membrane.rest().sides)
+        c.push_back(::membrane::dampingCoefficient(zeta, s.stiffness,
+                                                   0.5 * (bodies[s.a]->state->mass + bodies[s.b]->state->mass)));
+    return c;
 }
 
 } // namespace
@@ -82,6 +97,8 @@ void MembraneForceEngine::forget() {
     states_.clear();
     allNodes_.clear();
     contacts_.clear();
+    further_.clear();
+    sweep_.dropForces();
     left_.clear();
     interacting_.clear();
 }
@@ -116,7 +133,8 @@ void MembraneForceEngine::action() {
 
 void MembraneForceEngine::step() {
     MembraneFault::raise(*scene);
-    if (!isPreparedFor(*scene) || !membrane || preparedVersion_ != membrane->version()) {
+    const bool known = isPreparedFor(*scene) && membrane && preparedVersion_ == membrane->version();
+    if (!known || further_ != surroundings_.furtherForces(*membrane, *scene)) {
         checkKnown();
         try {
             prepare(*scene);
@@ -203,13 +221,22 @@ void MembraneForceEngine::prepareSweep(const vector<char>& owned, int parts) {
     left_.clear();
     for (const int i : allNodes_)
         if (!owned[i]) left_.push_back(bodies_[i].get());
-    ::membrane::Laws laws;
-    laws.crease = law();
-    laws.airDensity = airDensity;
-    laws.damping = dampingCoefficients(*membrane, bodies_, zeta);
-    const vector<Real> lengths = sweep_.lengths();
-    sweep_.prepare(membrane->rest(), membrane->triangles, laws, masses_, owned, parts);
-    if (lengths.size() == membrane->rest().sides.size()) sweep_.setLengths(lengths);
+    const vector<Real> memory = sweep_.memory();
+    further_ = surroundings_.furtherForces(*membrane, *scene);
+    sweep_.prepare(makeForces(bodies_, *scene), masses_, owned, parts);
+    if (!memory.empty() && memory.size() == sweep_.memorySize()) sweep_.setMemory(memory);
+}
+
+/// All forces on the membrane: the one place that knows which there are.
+::membrane::ElementForces MembraneForceEngine::makeForces(const vector<shared_ptr<Body>>& bodies,
+                                                          const Scene& in) const {
+    const ::membrane::RestState& rest = membrane->rest();
+    const auto damping = dampingCoefficients(*membrane, bodies, zeta);
+    ::membrane::ElementForces all{std::make_shared<::membrane::SideForces>(rest, damping)};
+    if (law().bending > 0.) all.push_back(std::make_shared<::membrane::CreaseForce>(rest, law()));
+    if (airDensity > 0.) all.push_back(std::make_shared<::membrane::DragForce>(membrane->triangles, airDensity));
+    for (const auto& further : surroundings_.furtherForces(*membrane, in)) all.push_back(further->make());
+    return all;
 }
 
 void MembraneForceEngine::gather() {
@@ -314,9 +341,9 @@ void MembraneForceEngine::findContacts() {
 }
 
 void MembraneForceEngine::continueLedger(const MembraneLedger* of, ::membrane::Sums wanted) {
-    if (of && of->started && !keepLengths_ && of->lastLengths.size() == membrane->rest().sides.size())
-        sweep_.setLengths(of->lastLengths);
-    keepLengths_ = of != nullptr;
+    if (of && of->started && !keepMemory_ && of->lastLengths.size() == sweep_.memorySize())
+        sweep_.setMemory(of->lastLengths);
+    keepMemory_ = of != nullptr;
     madeSums_ = wanted;
 }
 
@@ -324,7 +351,8 @@ void MembraneForceEngine::computeForces() {
     const MembraneLedger* const counting = ledger(*scene);
     const ::membrane::Sums sums = counting ? ::membrane::Sums::energies : ::membrane::Sums::none;
     continueLedger(counting, sums);
-    if (!counting && !(beta > 0. || zeta > 0. || airDensity > 0.)) return; // all forces were 0 from the start
+    const bool onlySprings = sweep_.forces().size() == 1 && !(zeta > 0.);
+    if (!counting && onlySprings) return; // which are interactions
     ::membrane::SweepStep step;
     step.dt = scene->dt;
     step.move = false;
@@ -332,38 +360,49 @@ void MembraneForceEngine::computeForces() {
     step.elastic = counting;
     step.sums = sums;
     sweep_.step(step);
-    for (const int i : allNodes_)
-        scene->forces.addForce(membrane->bodyIds[i],
-                               sweep_.creaseForce(i) + sweep_.dampingForce(i) + sweep_.dragForce(i));
+    for (const int i : allNodes_) {
+        Vector3r sum = sweep_.channelForce(0, i);
+        for (std::size_t channel = 1; channel < sweep_.channels().size(); ++channel)
+            sum += sweep_.channelForce(static_cast<int>(channel), i);
+        scene->forces.addForce(membrane->bodyIds[i], sum);
+    }
 }
 
-TimeStepState MembraneForceEngine::timeStepState(const Scene& in, const vector<shared_ptr<Body>>& bodies,
-                                                 const vector<NodeContact>& contacts) const {
-    TimeStepState now(*membrane, bodies, zeta, airDensity);
-    if (const FreeHub* hub = this->hub(in)) hub->addTo(now.masses);
-    now.contacts = ContactStiffness(contacts, bodies, in);
-    return now;
+::membrane::LinearForces MembraneForceEngine::linearForces(const Scene& in, const vector<shared_ptr<Body>>& bodies,
+                                                           const ContactStiffness& contacts) const {
+    ::membrane::Points x, v;
+    vector<Real> masses;
+    for (const auto& body : bodies) {
+        x.push_back(body->state->pos);
+        v.push_back(body->state->vel);
+        // A node held in some directions only counts as free: that bounds the step from below.
+        masses.push_back(isHeld(*body->state) ? 0. : body->state->mass);
+    }
+    if (const FreeHub* hub = this->hub(in)) hub->addTo(masses);
+    ::membrane::LinearForces all(masses);
+    for (const auto& force : makeForces(bodies, in)) force->addTo(all, x, v);
+    for (std::size_t i = 0; i < contacts.ground.size(); ++i) all.addGround(static_cast<int>(i), contacts.ground[i]);
+    all.beside = contacts.fastest;
+    return all;
 }
 
 void MembraneForceEngine::checkTimeStep() {
     checkedStep_ = scene->dt;
     if (forceTimeStep) return;
     writeBack();
-    TimeStepState now = timeStepState(*scene, bodies_, contacts_);
-    if (!allFinite(now.positions)) return; // gather() tells
-    if (::membrane::withinCriticalTimeStep(now.input(*membrane, law()), scene->dt)) return;
+    const auto isFinite = [](const shared_ptr<State>& state) { return state->pos.allFinite(); };
+    if (!std::all_of(states_.begin(), states_.end(), isFinite)) return; // gather() tells
+    const ContactStiffness contacts(contacts_, bodies_, *scene);
+    const ::membrane::LinearForces all = linearForces(*scene, bodies_, contacts);
+    if (::membrane::withinCriticalTimeStep(all, scene->dt)) return;
     checkedStep_ = -1.;
     std::ostringstream message;
-    message << "MembraneForceEngine: O.dt = " << scene->dt
-            << " s must be <= " << ::membrane::criticalTimeStep(now.input(*membrane, law()))
+    message << "MembraneForceEngine: O.dt = " << scene->dt << " s must be <= " << ::membrane::criticalTimeStep(all)
             << " s, the critical time step; lower it, or set forceTimeStep=True";
-    if (now.contacts.node >= 0) {
-        const int node = now.contacts.node, other = now.contacts.other;
-        now.contacts = ContactStiffness();
-        message << " (" << ::membrane::criticalTimeStep(now.input(*membrane, law()))
-                << " s without contacts, of which that of bodies #" << membrane->bodyIds[node] << " and #" << other
-                << " weighs most)";
-    }
+    if (contacts.node >= 0)
+        message << " (" << ::membrane::criticalTimeStep(linearForces(*scene, bodies_, ContactStiffness()))
+                << " s without contacts, of which that of bodies #" << membrane->bodyIds[contacts.node] << " and #"
+                << contacts.other << " weighs most)";
     throw std::runtime_error(message.str());
 }
 
@@ -394,6 +433,12 @@ vector<Vector3r> MembraneForceEngine::lastPositions() const {
     return x;
 }
 
+vector<Vector3r> MembraneForceEngine::lastVelocities() const {
+    vector<Vector3r> v;
+    for (const int i : allNodes_) v.push_back(velocitySeen(i));
+    return v;
+}
+
 boost::python::object MembraneForceEngine::lastPositionsBytes() const {
     const vector<Vector3r> x = lastPositions();
     static_assert(sizeof(Vector3r) == 3 * sizeof(Real));
@@ -401,10 +446,19 @@ boost::python::object MembraneForceEngine::lastPositionsBytes() const {
         PyBytes_FromStringAndSize(reinterpret_cast<const char*>(x.data()), x.size() * sizeof(Vector3r))));
 }
 
-vector<Vector3r> MembraneForceEngine::ofNodes(Vector3r (::membrane::Sweep::*force)(int) const) const {
+vector<Vector3r> MembraneForceEngine::channelForces(int channel) const {
     vector<Vector3r> forces;
-    for (const int i : allNodes_) forces.push_back((sweep_.*force)(i));
+    for (const int i : allNodes_) forces.push_back(sweep_.channelForce(channel, i));
     return forces;
+}
+
+vector<Vector3r> MembraneForceEngine::forcesOf(const string& channel) const {
+    const auto& names = sweep_.channels();
+    const auto found = std::find(names.begin(), names.end(), channel);
+    if (found == names.end())
+        throw std::invalid_argument(getClassName() + ".forcesOf: channel = '" + channel +
+                                    "' must be a kind of forces that was computed");
+    return channelForces(static_cast<int>(found - names.begin()));
 }
 
 vector<Vector3r> MembraneForceEngine::nodeForces() {
@@ -420,18 +474,13 @@ Real MembraneForceEngine::criticalTimeStep() {
     writeBack();
     given().checkUnchanged();
     const auto bodies = membrane->bodies(*current);
-    return ::membrane::criticalTimeStep(
-        timeStepState(*current, bodies, NodeInteractions(*membrane, *current).contacts).input(*membrane, law()));
+    const ContactStiffness contacts(NodeInteractions(*membrane, *current).contacts, bodies, *current);
+    return ::membrane::criticalTimeStep(linearForces(*current, bodies, contacts));
 }
 
 Real MembraneForceEngine::creaseEnergy(const ::membrane::Points& x) const {
     if (!membrane || x.size() != membrane->nodes.size()) return 0.;
-    const ::membrane::CreaseLaw lawNow = law();
-    Real energy = 0.;
-    for (const ::membrane::Crease& c : membrane->rest().creases)
-        energy += ::membrane::creaseEnergy(c.rest, lawNow,
-                                           ::membrane::creaseState(c.rest, x[c.a], x[c.b], x[c.c], x[c.d]).theta);
-    return energy;
+    return ::membrane::CreaseForce(membrane->rest(), law()).energy(x);
 }
 
 Real MembraneForceEngine::creaseEnergyNow() {
@@ -444,8 +493,7 @@ vector<Real> MembraneForceEngine::creaseAngles(const boost::python::object& at) 
     const ::membrane::Points x =
         given().positions(*Omega::instance().getScene(), pointsFrom(at, "MembraneForceEngine.creaseAngles: positions"));
     vector<Real> angles;
-    for (const ::membrane::Crease& c : membrane->rest().creases)
-        angles.push_back(::membrane::creaseState(c.rest, x[c.a], x[c.b], x[c.c], x[c.d]).theta);
+    for (const ::membrane::Crease& c : membrane->rest().creases) angles.push_back(::membrane::creaseState(c, x).theta);
     return angles;
 }
 

@@ -12,8 +12,8 @@
 namespace yade {
 
 class FreeHub;
+class MembraneForce;
 class MembraneLedger;
-struct TimeStepState;
 
 class MembraneForceEngine : public GlobalEngine {
 public:
@@ -29,11 +29,13 @@ public:
     virtual Vector3r positionSeen(int node) const { return sweep_.x.at(node); }
     virtual Vector3r velocitySeen(int node) const { return sweep_.v.at(node); }
     vector<Vector3r> lastPositions() const;
+    vector<Vector3r> lastVelocities() const;
     /// Present positions [m] of the nodes, for the thread that draws them.
     ::membrane::Points positionsNow(const Scene& now) const;
-    vector<Vector3r> creaseForces() const { return ofNodes(&::membrane::Sweep::creaseForce); }
-    vector<Vector3r> dampingForces() const { return ofNodes(&::membrane::Sweep::dampingForce); }
-    vector<Vector3r> dragForces() const { return ofNodes(&::membrane::Sweep::dragForce); }
+    vector<Vector3r> creaseForces() const { return channelForces(::membrane::creaseChannel); }
+    vector<Vector3r> dampingForces() const { return channelForces(::membrane::dampingChannel); }
+    vector<Vector3r> dragForces() const { return channelForces(::membrane::dragChannel); }
+    vector<Vector3r> forcesOf(const string& channel) const;
     boost::python::object lastPositionsBytes() const;
 
     /// The free hub that this engine's forces turn, or none.
@@ -54,7 +56,7 @@ public:
     virtual std::pair<Real, Real> powerFromOutside() const { return {0., 0.}; }
     /// The sums that the last step made for the ledger.
     ::membrane::Sums madeSums() const { return madeSums_; }
-    void forgetLengths() { keepLengths_ = false; }
+    void forgetMemory() { keepMemory_ = false; }
 
     /// Brings the bodies up to date, if this engine moves them itself.
     virtual void writeBack() {}
@@ -104,6 +106,8 @@ public:
         .def("creaseForces", &Guarded<&MembraneForceEngine::creaseForces>::call, "Forces of the creases on the nodes in the last step [N]; 0 where a MembraneIntegrator has moved them.")
         .def("dampingForces", &Guarded<&MembraneForceEngine::dampingForces>::call, "Forces of damping on the nodes in the last step [N]; 0 where a MembraneIntegrator has moved them.")
         .def("dragForces", &Guarded<&MembraneForceEngine::dragForces>::call, "Forces of air drag on the nodes in the last step [N]; 0 where a MembraneIntegrator has moved them.")
+        .def("forcesOf", &Guarded<&MembraneForceEngine::forcesOf>::call, (boost::python::arg("channel")), "Forces of one kind on the nodes in the last step [N], by the name under which their "
+            "work is booked: 'crease', 'damping', 'drag', or that of a :yref:`MembraneForce`; 0 where a MembraneIntegrator has moved them.\n\n:raises ValueError: if there is no such kind")
         .def("nodeForces", &Guarded<&MembraneForceEngine::nodeForces>::call, "All forces on the nodes [N] in a step in which nothing was moved, gravity apart.")
         .def("forgetVelocities", &Guarded<&MembraneForceEngine::forgetVelocities>::call, "Call it after giving nodes other velocities: until the next step they count as they are.")
         .def("writeBack", &Guarded<&MembraneForceEngine::writeBack>::call, "Bring the bodies up to date, in the middle of a run with an exchangePeriod above 1.")
@@ -160,22 +164,24 @@ private:
     std::size_t bodyCount_ = 0; ///< of the scene, when clumps were last looked for
     long lastStep_ = -1;        ///< in which the forces were computed; -1: none yet
     Real checkedStep_ = -1.;
-    Real checkedContacts_ = 0.; ///< ContactStiffness::fastest with which O.dt was checked
-    bool keepLengths_ = false;  ///< the sweep's lengths are those of the ledger's last step
+    Real checkedContacts_ = 0.;                 ///< ContactStiffness::fastest with which O.dt was checked
+    bool keepMemory_ = false;                   ///< the sweep's memory is that of the ledger's last step
+    vector<shared_ptr<MembraneForce>> further_; ///< for which it is prepared
     vector<NodeContact> contacts_;
     vector<const Body*> left_;                     ///< bodies of the nodes that NewtonIntegrator may move
     vector<shared_ptr<MembranePhys>> interacting_; ///< what computes the sides
 
     void step();
     void checkKnown() const;
-    TimeStepState timeStepState(const Scene& in, const vector<shared_ptr<Body>>& bodies,
-                                const vector<NodeContact>& contacts) const;
+    ::membrane::ElementForces makeForces(const vector<shared_ptr<Body>>& bodies, const Scene& in) const;
+    ::membrane::LinearForces linearForces(const Scene& in, const vector<shared_ptr<Body>>& bodies,
+                                          const ContactStiffness& contacts) const;
     void checkTimeStep();
     void checkSides();
     void findSides();
     [[noreturn]] void refuseSide(std::size_t side) const;
     void findContacts();
-    vector<Vector3r> ofNodes(Vector3r (::membrane::Sweep::*force)(int) const) const;
+    vector<Vector3r> channelForces(int channel) const;
 };
 REGISTER_SERIALIZABLE(MembraneForceEngine);
 

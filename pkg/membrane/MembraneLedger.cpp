@@ -3,9 +3,10 @@
 #include "ContactBook.hpp"
 #include "FreeHub.hpp"
 #include "RunEnd.hpp"
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <core/Scene.hpp>
+#include <numeric>
 
 namespace yade {
 
@@ -17,8 +18,16 @@ namespace {
 /// energies wanted in the next one: a run that goes wrong may do so within a few steps.
 constexpr Real restlessShare = 1e-3;
 
-/// Of doneWorks: crease, damping, drag, driven nodes, others, angular impulse.
-constexpr std::size_t entryCount = 6;
+/// Of doneWorks: first the usual channels, as the sweep numbers them; last those of further forces.
+enum WorkEntry : std::size_t {
+    creaseEntry = ::membrane::creaseChannel,
+    dampingEntry = ::membrane::dampingChannel,
+    dragEntry = ::membrane::dragChannel,
+    drivenEntry,
+    otherEntry,
+    impulseEntry,
+    furtherEntries
+};
 
 /// A vector turned about -z by `angle` [rad]: the chord of a driven node's step before, from that of this step.
 Vector3r turnedBack(const Vector3r& v, Real angle) {
@@ -37,24 +46,30 @@ Vector3r freeDirections(const State& state) {
 void MembraneLedger::action() {
     StepGuard::refuseCall(*this);
     if (!forces || !forces->membrane) throw std::runtime_error("MembraneLedger: forces is not set, or has no membrane");
-    const Membrane& membrane = *forces->membrane;
     if (!forces->hasRun(*scene) || forces->madeSums() == ::membrane::Sums::none)
         throw std::runtime_error("MembraneLedger: its MembraneForceEngine must run in the same step, before it");
     const FreeHub* const hub = forces->hub(*scene);
     if (hub && !hub->hasRun(*scene))
         throw std::runtime_error("MembraneLedger: FreeHub must run in the same step, before it");
     const ::membrane::Sweep& sweep = forces->sweep();
-    if (started && !lastLengths.empty() && lastLengths.size() != membrane.rest().sides.size())
+    if (started && !lastLengths.empty() && lastLengths.size() != sweep.memorySize())
         throw std::runtime_error("MembraneLedger: forces has another membrane now");
     const bool all = forces->madeSums() == ::membrane::Sums::energies;
 
-    // Of crease, damping, drag, driven nodes, others: power at the velocities before this step, and at their mean.
+    // Power at the velocities before this step, and at their mean.
     const ::membrane::MotionSums& moved = sweep.motionSums();
+    const int channels = static_cast<int>(sweep.channels().size());
+    vector<std::size_t> entry;
+    for (int channel = 0; channel < channels; ++channel) entry.push_back(entryOf(sweep, channel));
     const auto [arrivingOutside, leavingOutside] = forces->powerFromOutside();
-    std::array<Real, entryCount> arriving{
-        moved.arriving[0], moved.arriving[1], moved.arriving[2], 0., arrivingOutside, 0.};
-    std::array<Real, entryCount> mean{
-        moved.power[0], moved.power[1], moved.power[2], 0., 0.5 * (arrivingOutside + leavingOutside), moved.torque};
+    vector<Real> arriving(furtherEntries + furtherNames.size(), 0.), mean = arriving;
+    for (int channel = 0; channel < channels; ++channel) {
+        arriving[entry[channel]] = moved.arriving[channel];
+        mean[entry[channel]] = moved.power[channel];
+    }
+    arriving[otherEntry] = arrivingOutside;
+    mean[otherEntry] = 0.5 * (arrivingOutside + leavingOutside);
+    mean[impulseEntry] = moved.torque;
     Real kineticNow = moved.kinetic, potentialNow = moved.potential, momentumNow = moved.angularMomentum;
     const auto& states = forces->states();
     for (const int i : forces->nodesLeft()) {
@@ -64,17 +79,17 @@ void MembraneLedger::action() {
         const Vector3r free = freeDirections(state);
         const Vector3r held = onHub ? Vector3r(Vector3r::Zero()) : Vector3r(Vector3r::Ones() - free);
         const Vector3r total = forces->totalForce(i);
-        const Vector3r fCrease = sweep.creaseForce(i), fDamping = sweep.dampingForce(i), fDrag = sweep.dragForce(i);
-        const Vector3r internal = sweep.elasticForce(i) + fCrease + fDamping + fDrag, other = total - internal;
+        Vector3r internal = sweep.elasticForce(i), ofChannel[::membrane::maxChannels];
+        for (int channel = 0; channel < channels; ++channel)
+            internal += ofChannel[channel] = sweep.channelForce(channel, i);
+        const Vector3r other = total - internal;
         const Vector3r after = state.vel;
         const Vector3r before =
             free.isZero() && !onHub ? turnedBack(after, state.angVel[2] * scene->dt) : forces->velocitySeen(i);
-        const auto addPowers = [&](std::array<Real, 6>& powers, const Vector3r& v) {
-            powers[0] += fCrease.dot(v);
-            powers[1] += fDamping.dot(v);
-            powers[2] += fDrag.dot(v);
-            powers[3] -= internal.cwiseProduct(held).dot(v); // what holds a node bears the membrane's forces on it
-            powers[4] += other.cwiseProduct(Vector3r::Ones() - held).dot(v);
+        const auto addPowers = [&](vector<Real>& powers, const Vector3r& v) {
+            for (int channel = 0; channel < channels; ++channel) powers[entry[channel]] += ofChannel[channel].dot(v);
+            powers[drivenEntry] -= internal.cwiseProduct(held).dot(v); // what holds a node bears the forces on it
+            powers[otherEntry] += other.cwiseProduct(Vector3r::Ones() - held).dot(v);
         };
         const Vector3r between = 0.5 * (before + after);
         addPowers(mean, between);
@@ -85,24 +100,27 @@ void MembraneLedger::action() {
         momentumNow += x[0] * momentum[1] - x[1] * momentum[0];
         // The integrator keeps gravity out of the scene's forces.
         const Vector3r pull = (total + state.mass * gravity).cwiseProduct(free);
-        mean[5] += x[0] * pull[1] - x[1] * pull[0];
+        mean[impulseEntry] += x[0] * pull[1] - x[1] * pull[0];
     }
     if (hub) {
         kineticNow += hub->kinetic();
         momentumNow += hub->angularMomentum();
-        mean[5] += hub->torque;
-        mean[4] += hub->contactTorque * 0.5 * (hub->spinBefore + hub->spin);
-        arriving[4] += hub->contactTorque * hub->spinBefore;
+        mean[impulseEntry] += hub->torque;
+        mean[otherEntry] += hub->contactTorque * 0.5 * (hub->spinBefore + hub->spin);
+        arriving[otherEntry] += hub->contactTorque * hub->spinBefore;
     }
-    arriving[5] = mean[5]; // the impulse's torque is that of this step all along
+    arriving[impulseEntry] = mean[impulseEntry]; // the impulse's torque is that of this step all along
 
     // Work from the step before to this one is the mean of both forces times the velocity between them: half a step
     // with this step's forces before it, and half a step after it.
     bookContacts();
+    doneWorks.resize(mean.size());
     if (started) {
-        doneKinks += sweep.sideEnergies().kink;
+        doneKinks += sweep.elementEnergies().kink;
         if (all) {
-            Real* const entries[] = {&creaseWork, &dampingWork, &dragWork, &drivenWork, &contactWork, &angularImpulse};
+            vector<Real*> entries{&creaseWork, &dampingWork, &dragWork, &drivenWork, &contactWork, &angularImpulse};
+            furtherWorks.resize(furtherNames.size());
+            for (Real& work : furtherWorks) entries.push_back(&work);
             for (std::size_t i = 0; i < arriving.size(); ++i)
                 *entries[i] = doneWorks[i] + 0.5 * countedStep * arriving[i];
         }
@@ -112,17 +130,17 @@ void MembraneLedger::action() {
                                 ? scene->dt * mean[i]
                                 : 0.5 * countedStep * arriving[i] + 0.5 * scene->dt * (2. * mean[i] - arriving[i]);
     } else {
-        doneWorks.assign(mean.size(), 0.);
         for (std::size_t i = 0; i < mean.size(); ++i) doneWorks[i] = 0.5 * scene->dt * (2. * mean[i] - arriving[i]);
     }
     countedStep = scene->dt;
-    restless = !(scene->dt * (std::abs(mean[0]) + std::abs(mean[1]) + std::abs(mean[2]) + std::abs(mean[4])) <=
-                 restlessShare * (std::abs(kinetic) + elastic));
+    Real moving = 0.;
+    for (const std::size_t k : {creaseEntry, dampingEntry, dragEntry, otherEntry}) moving += std::abs(mean[k]);
+    restless = !(scene->dt * moving <= restlessShare * (std::abs(kinetic) + elastic));
     if (!all) return;
 
     upToDate_ = scene->iter;
     time = scene->time;
-    elastic = sweep.sideEnergies().elastic;
+    elastic = sweep.elementEnergies().elastic;
     kinkError = doneKinks;
     kinetic = kineticNow;
     potential = potentialNow;
@@ -137,9 +155,12 @@ void MembraneLedger::action() {
 void MembraneLedger::postLoad(MembraneLedger&) {
     const StepGuard::Look look;
     if (period <= 0) throw std::invalid_argument("MembraneLedger: period = " + std::to_string(period) + " must be > 0");
-    if (started && doneWorks.size() != entryCount)
+    const std::size_t entries = furtherEntries + furtherNames.size();
+    if (started && doneWorks.size() != entries)
         throw std::invalid_argument("MembraneLedger: doneWorks has " + std::to_string(doneWorks.size()) +
-                                    " entries; a ledger that was started has " + std::to_string(entryCount));
+                                    " entries; a ledger that was started has " + std::to_string(entries));
+    if (furtherWorks.size() > furtherNames.size())
+        throw std::invalid_argument("MembraneLedger: furtherWorks has more entries than furtherNames");
     if (contactWorks.size() != contactPairs.size() || contactMost.size() != contactPairs.size())
         throw std::invalid_argument("MembraneLedger: contactPairs, contactWorks and contactMost must be of one length");
 }
@@ -173,11 +194,30 @@ void MembraneLedger::preSave(MembraneLedger&) {
 
 void MembraneLedger::fetch() {
     savedCrease = crease();
-    if (started && forces && forces->madeSums() != ::membrane::Sums::none) lastLengths = forces->sweep().lengths();
+    if (started && forces && forces->madeSums() != ::membrane::Sums::none) lastLengths = forces->sweep().memory();
+}
+
+/// Where a channel's work is booked.
+std::size_t MembraneLedger::entryOf(const ::membrane::Sweep& sweep, int channel) {
+    if (channel < ::membrane::otherChannels) return channel;
+    const string& name = sweep.channels()[channel];
+    const auto place = std::find(furtherNames.begin(), furtherNames.end(), name);
+    const std::size_t entry = furtherEntries + (place - furtherNames.begin());
+    if (place == furtherNames.end()) furtherNames.push_back(name);
+    return entry;
+}
+
+Real MembraneLedger::workOf(const string& channel) const {
+    const std::pair<const char*, Real> first[] = {{"crease", creaseWork}, {"damping", dampingWork}, {"drag", dragWork}};
+    for (const auto& [name, work] : first)
+        if (channel == name) return work;
+    const std::size_t place = std::find(furtherNames.begin(), furtherNames.end(), channel) - furtherNames.begin();
+    return place < furtherWorks.size() ? furtherWorks[place] : 0.;
 }
 
 Real MembraneLedger::balance() const {
-    return total() - initial - creaseWork - dampingWork - dragWork - drivenWork - contactWork;
+    return total() - initial - creaseWork - dampingWork - dragWork - drivenWork - contactWork -
+           std::accumulate(furtherWorks.begin(), furtherWorks.end(), 0.);
 }
 
 } // namespace yade

@@ -21,6 +21,7 @@ public:
     Real crease() const;
     Real creaseDefect() const { return crease() - initialCrease + creaseWork; }
     Real total() const { return kinetic + elastic + potential; }
+    Real workOf(const string& channel) const;
 
     // clang-format off
     YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MembraneLedger, GlobalEngine,
@@ -54,7 +55,9 @@ public:
         ((int, period, 1, Attr::triggerPostLoad, "Steps between two times at which all values are brought up to date, > 0; also done in the first step, when O.dt changes, while the works of a "
             "single step are more than a thousandth of the energies, and at the end of a run. "
             "What a MembraneIntegrator has to add up, is added up in every step. With interactions every step is brought up to date."))
-        ((vector<Real>, doneWorks, , (Attr::readonly | Attr::hidden), "Works [J] of crease, damping, drag, driven nodes, others, and angular impulse [N m s], up to half a step after the last one."))
+        ((vector<string>, furtherNames, , (Attr::readonly | Attr::hidden), "The kinds of further forces, see :yref:`MembraneForce`, that have done work."))
+        ((vector<Real>, furtherWorks, , (Attr::readonly | Attr::hidden), "The work of each [J]."))
+        ((vector<Real>, doneWorks, , (Attr::readonly | Attr::hidden), "Works [J] of crease, damping, drag, driven nodes, others, angular impulse [N m s], and works of further forces, up to half a step after the last one."))
         ((Real, doneKinks, 0., (Attr::readonly | Attr::hidden), "kinkError up to the last step [J]."))
         ((bool, restless, false, (Attr::readonly | Attr::hidden), "The last step's works were large: a watch must not miss what comes."))
         ((Real, countedStep, 0., (Attr::readonly | Attr::hidden), "O.dt of the last step [s]."))
@@ -69,6 +72,7 @@ public:
         .add_property("crease", &Guarded<&MembraneLedger::crease>::call, "Energy stored in the creases [J]; with the law 'paper' and unequal heights only nearly minus creaseWork.")
         .add_property("creaseDefect", &Guarded<&MembraneLedger::creaseDefect>::call, "crease - initialCrease + creaseWork [J]: what creases gave beyond their energy. "
             "The law 'paper' gives and takes where heights are unequal; an angle that jumps through its branch cut does too.")
+        .def("workOf", &Guarded<&MembraneLedger::workOf>::call, (boost::python::arg("channel")), "Work [J] of the forces of one kind: 'crease', 'damping', 'drag', or that of a :yref:`MembraneForce`; 0 if there were none.")
         .add_property("total", &MembraneLedger::total, "kinetic + elastic + potential [J].")
         .add_property("balance", &Guarded<&MembraneLedger::balance>::call, "total - initial - all works [J]: 0 but for the error of the time step.")
         .add_property("unexplained", &Guarded<&MembraneLedger::unexplained>::call, "balance - kinkError [J]: the rest of the time step's error, and of the book-keeping.")
@@ -78,6 +82,7 @@ public:
 private:
     long upToDate_ = -1; ///< step to which all values belong
 
+    std::size_t entryOf(const ::membrane::Sweep& sweep, int channel);
     void bookContacts();
 };
 REGISTER_SERIALIZABLE(MembraneLedger);

@@ -2,8 +2,6 @@
 #include "MembraneWatch.hpp"
 #include "BodyAt.hpp"
 #include "FreeHub.hpp"
-#include "mechanics/Drag.hpp"
-#include "mechanics/SideForce.hpp"
 #include <algorithm>
 #include <cmath>
 #include <core/Omega.hpp>
@@ -16,8 +14,8 @@ YADE_PLUGIN((MembraneWatch));
 
 namespace {
 
-enum Part { sidesPart, creasesPart, dampingPart, dragPart, contactsPart, parts };
-const char* const partNames[] = {"the sides", "the creases", "damping", "air drag", "contacts"};
+/// Parts that every watch has: sides, creases, damping, drag, contacts.
+constexpr std::size_t usualParts = 5;
 
 /// Strain [-] of all sides whose energy counts as none: rounding must not stop a membrane at rest.
 constexpr Real noStrain = 1e-9;
@@ -25,12 +23,35 @@ constexpr Real noStrain = 1e-9;
 /// Of a body whose state is kept: id, pos, vel, angVel, ori.
 constexpr std::size_t numbersOfBody = 1 + 3 + 3 + 3 + 4;
 
-std::string pairText(const Membrane& membrane, int a, int b) {
-    return std::to_string(a) + "-" + std::to_string(b) + " (bodies #" + std::to_string(membrane.bodyIds[a]) + " and #" +
-           std::to_string(membrane.bodyIds[b]) + ")";
+string bodyText(const Membrane& membrane, int node) {
+    return "#" + std::to_string(membrane.bodyIds[node]);
+}
+
+/// An element by its nodes and their bodies.
+string elementText(const ::membrane::Culprit& culprit, const Membrane& membrane) {
+    string text = culprit.element;
+    if (culprit.nodes.size() < 2) {
+        for (const int node : culprit.nodes) text += " " + std::to_string(node);
+        return text;
+    }
+    for (std::size_t k = 0; k < culprit.nodes.size(); ++k)
+        text += (k == 0 ? " " : "-") + std::to_string(culprit.nodes[k]);
+    text += " (bodies ";
+    for (std::size_t k = 0; k < culprit.nodes.size(); ++k)
+        text += (k == 0 ? "" : k + 1 < culprit.nodes.size() ? ", " : " and ") + bodyText(membrane, culprit.nodes[k]);
+    return text + ")";
 }
 
 } // namespace
+
+/// What may give energy from nowhere.
+struct MembraneWatch::Part {
+    const char* title;
+    Real gave;                             ///< [J]
+    const ::membrane::ElementForce* force; ///< whose elements to blame; null: contacts
+    bool elastic = false;                  ///< its strain energy, and not what its channel gave
+    bool known = true;                     ///< whether it was looked at in this step
+};
 
 void MembraneWatch::postLoad(MembraneWatch&) {
     const StepGuard::Look look;
@@ -43,7 +64,8 @@ void MembraneWatch::postLoad(MembraneWatch&) {
                                         " entries, which no watch has kept");
     };
     constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
-    checkLength("lowest", lowest.size(), parts, 1);
+    if (!lowest.empty() && lowest.size() < usualParts) checkLength("lowest", lowest.size(), usualParts, 1);
+    checkLength("lowest", lowest.size(), 1, usualParts + ::membrane::maxChannels);
     checkLength("newerBodies", newerBodies.size(), numbersOfBody, any);
     checkLength("olderBodies", olderBodies.size(), numbersOfBody, any);
     checkLength("newerHub", newerHub.size(), 2, 1);
@@ -60,23 +82,42 @@ void MembraneWatch::action() {
             floor_ += 0.5 * std::abs(s.stiffness) * std::pow(noStrain * s.restLength, 2);
 
     const bool look = looked < 0 || scene->iter - looked >= period;
-    const Real gave[parts] = {ledger->balance(), look ? ledger->creaseDefect() : 0., ledger->dampingWork,
-                              ledger->dragWork, ledger->contactGain};
-    if (lowest.empty()) lowest.assign(gave, gave + parts);
+    const vector<Part> all = parts(look);
+    for (std::size_t k = lowest.size(); k < all.size(); ++k) lowest.push_back(all[k].gave);
     peak = std::max(peak, ledger->kinetic + ledger->elastic + (look ? ledger->crease() : 0.));
     Real worstShare = 0.; // of what it may give
-    for (int part = 0; part < parts; ++part) {
-        if (part == creasesPart && !look) continue;
-        lowest[part] = std::min(lowest[part], gave[part]);
-        const Real risen = gave[part] - lowest[part];
-        const Real all = allEnergy() + (part == contactsPart ? ledger->contactTaken : 0.);
-        const Real share = risen / (tolerance * (all + floor_));
-        if (!(share <= 1.)) stop(part, risen, all);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        const Part& part = all[k];
+        if (!part.known) continue;
+        lowest[k] = std::min(lowest[k], part.gave);
+        const Real risen = part.gave - lowest[k];
+        const Real energy = allEnergy() + (part.force ? 0. : ledger->contactTaken);
+        const Real share = risen / (tolerance * (energy + floor_));
+        if (!(share <= 1.)) stop(part, risen, energy);
         worstShare = std::max(worstShare, share);
     }
     if (!look) return;
     looked = scene->iter;
     if (worstShare <= 0.5) keep();
+}
+
+/// The sides, whose energy from nowhere is the ledger's balance; all kinds of forces that must not give any; contacts.
+vector<MembraneWatch::Part> MembraneWatch::parts(bool look) const {
+    const ::membrane::Sweep& sweep = ledger->forces->sweep();
+    const ::membrane::ElementForce* const sides = sweep.forces().front().get();
+    const auto of = [&](int channel) {
+        const ::membrane::ElementForce* const force = sweep.forceOf(channel);
+        return force ? force : sides; // without one there is nothing to blame
+    };
+    vector<Part> all{{"the sides", ledger->balance(), sides, true},
+                     {"the creases", look ? ledger->creaseDefect() : 0., of(::membrane::creaseChannel), false, look},
+                     {"damping", ledger->dampingWork, of(::membrane::dampingChannel)},
+                     {"air drag", ledger->dragWork, of(::membrane::dragChannel)},
+                     {"contacts", ledger->contactGain, nullptr}};
+    for (int channel = ::membrane::otherChannels; channel < static_cast<int>(sweep.channels().size()); ++channel)
+        if (sweep.exchange(channel) == ::membrane::Exchange::loses)
+            all.push_back({of(channel)->title(), ledger->workOf(sweep.channels()[channel]), of(channel)});
+    return all;
 }
 
 Real MembraneWatch::allEnergy() const {
@@ -135,7 +176,7 @@ Real MembraneWatch::restore() {
     }
     *ledger = book;
     ledger->forces = forces;
-    forces->forgetLengths();
+    forces->forgetMemory();
     current->time = time;
     current->subStep = -1; // the state lies between two steps, and not within the one that was stopped
     current->speed = 0.;   // of the computer; two saves of one state are to be the same
@@ -145,62 +186,36 @@ Real MembraneWatch::restore() {
     return time;
 }
 
-void MembraneWatch::stop(int part, Real gain, Real all) const {
+/// Where most energy moved in the last step; of the creases, where most is stored.
+string MembraneWatch::worstPlace(const Part& part) const {
     MembraneForceEngine& forces = *ledger->forces;
     const Membrane& membrane = *forces.membrane;
-    const ::membrane::Points x = forces.lastPositions();
-    ::membrane::Points v;
-    for (int i = 0; i < forces.nodeCount(); ++i) v.push_back(forces.velocitySeen(i));
-    const auto before = [&](int node) -> Vector3r { return x[node] - scene->dt * v[node]; };
-
-    // Where most energy moved in the last step; of the creases, where most is stored.
-    std::string where;
-    Real most = -1.;
-    if (part == creasesPart) {
-        const ::membrane::CreaseLaw law = forces.law();
-        for (const ::membrane::Crease& c : membrane.rest().creases) {
-            const Real energy = ::membrane::creaseEnergy(
-                c.rest, law, ::membrane::creaseState(c.rest, x[c.a], x[c.b], x[c.c], x[c.d]).theta);
-            if (!(energy <= most)) most = energy, where = "crease " + pairText(membrane, c.a, c.b);
-        }
-    } else if (part == contactsPart) {
-        for (const NodeContact& contact : forces.contacts()) {
-            const Real strength = contact.force.norm();
-            if (!(strength <= most))
-                most = strength, where = "the contact of bodies #" + std::to_string(membrane.bodyIds[contact.node]) +
-                                         " and #" + std::to_string(contact.other);
-        }
-        if (where.empty()) where = "contacts that are over";
-    } else if (part == dragPart) {
-        vector<Real> weights(x.size(), 0.);
-        for (const Vector3i& t : membrane.triangles) {
-            const Vector3r area = (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
-            for (int k = 0; k < 3; ++k) weights[t[k]] += ::membrane::dragWeight(area, v[t[k]]);
-        }
-        for (std::size_t i = 0; i < x.size(); ++i) {
-            const Real power = -::membrane::nodeDrag(forces.airDensity, weights[i], v[i]).dot(v[i]);
-            if (!(power <= most)) most = power, where = "node " + std::to_string(i);
-        }
-    } else {
-        for (const ::membrane::Side& s : membrane.rest().sides) {
-            const Vector3r now = x[s.b] - x[s.a], then = before(s.b) - before(s.a);
-            const Real change = now.norm() - then.norm();
-            const Real mean = 0.5 * (::membrane::sideTension(now.norm(), s.stiffness, s.restLength, s.critical) +
-                                     ::membrane::sideTension(then.norm(), s.stiffness, s.restLength, s.critical));
-            const Real weight = part == dampingPart ? s.stiffness * change * change : std::abs(mean * change);
-            if (!(weight <= most)) most = weight, where = "side " + pairText(membrane, s.a, s.b);
-        }
+    if (part.force) {
+        const ::membrane::Points x = forces.lastPositions(), v = forces.lastVelocities();
+        ::membrane::Points before;
+        for (std::size_t i = 0; i < x.size(); ++i) before.push_back(x[i] - scene->dt * v[i]);
+        return elementText(part.force->culprit({x, v, before}, part.elastic), membrane);
     }
+    const NodeContact* strongest = nullptr;
+    for (const NodeContact& contact : forces.contacts())
+        if (!strongest || !(contact.force.norm() <= strongest->force.norm())) strongest = &contact;
+    return strongest ? "the contact of bodies " + bodyText(membrane, strongest->node) + " and #" +
+                           std::to_string(strongest->other)
+                     : "contacts that are over";
+}
+
+void MembraneWatch::stop(const Part& part, Real gain, Real all) const {
+    const ::membrane::Points v = ledger->forces->lastVelocities();
     std::size_t fastest = 0;
     for (std::size_t i = 0; i < v.size(); ++i)
         if (!(v[i].squaredNorm() <= v[fastest].squaredNorm())) fastest = i;
 
     std::ostringstream message;
-    message << "Membrane: the run went wrong at t = " << scene->time << " s, step " << scene->iter << ": "
-            << partNames[part] << " gave " << gain << " J from nowhere, more than " << tolerance << " of all energy, "
-            << all << " J; most of it at " << where << "; node " << fastest << " is the fastest, " << v[fastest].norm()
-            << " m/s. O.dt = " << scene->dt << " s, the critical time step is " << forces.criticalTimeStep()
-            << " s: try a shorter one";
+    message << "Membrane: the run went wrong at t = " << scene->time << " s, step " << scene->iter << ": " << part.title
+            << " gave " << gain << " J from nowhere, more than " << tolerance << " of all energy, " << all
+            << " J; most of it at " << worstPlace(part) << "; node " << fastest << " is the fastest, "
+            << v[fastest].norm() << " m/s. O.dt = " << scene->dt << " s, the critical time step is "
+            << ledger->forces->criticalTimeStep() << " s: try a shorter one";
     throw std::runtime_error(message.str());
 }
 

@@ -22,7 +22,7 @@ public:
         ((shared_ptr<MembraneLedger>, ledger, , Attr::triggerPostLoad, "The ledger that is watched."))
         ((Real, tolerance, 0.1, Attr::triggerPostLoad, "Energy from nowhere that stops the run, over all energy: the largest of kinetic, strain and crease energy so far, and what was lost by damping and drag [-], > 0."))
         ((int, period, 100, Attr::triggerPostLoad, "Steps between two states that are kept to be restored, and between two looks at the creases, > 0."))
-        ((vector<Real>, lowest, , (Attr::readonly | Attr::hidden), "Lowest yet of what sides, creases, damping, drag and contacts gave [J]."))
+        ((vector<Real>, lowest, , (Attr::readonly | Attr::hidden), "Lowest yet of what sides, creases, damping, drag, contacts and further forces gave [J]."))
         ((Real, peak, 0., (Attr::readonly | Attr::hidden), "Largest kinetic, strain and crease energy yet [J]."))
         ((long, looked, -1, (Attr::readonly | Attr::hidden), "Step of the last look at the creases; -1: none yet."))
         ((vector<Real>, newerBodies, , (Attr::readonly | Attr::hidden), "The state kept last: id, pos, vel, angVel and ori of every body in turn."))
@@ -44,9 +44,12 @@ public:
 private:
     Real floor_ = 0.; ///< energy [J] that counts as none
 
+    struct Part;
+    vector<Part> parts(bool look) const;
     void keep();
     Real allEnergy() const;
-    [[noreturn]] void stop(int part, Real gain, Real all) const;
+    std::string worstPlace(const Part& part) const;
+    [[noreturn]] void stop(const Part& part, Real gain, Real all) const;
 };
 REGISTER_SERIALIZABLE(MembraneWatch);
 

@@ -2,6 +2,7 @@
 #include "Surroundings.hpp"
 #include "CentrifugalField.hpp"
 #include "FreeHub.hpp"
+#include "MembraneForce.hpp"
 #include "MembraneLedger.hpp"
 #include "MembraneWatch.hpp"
 #include "SpoolRotation.hpp"
@@ -67,6 +68,7 @@ void Surroundings::sort(Engine& engine, std::size_t place) {
         take(forces_, dynamic_cast<MembraneForceEngine*>(&engine)) ||
         take(ledgers_, dynamic_cast<MembraneLedger*>(&engine)) || take(hubs_, dynamic_cast<FreeHub*>(&engine)) ||
         take(fields_, dynamic_cast<CentrifugalField*>(&engine)) ||
+        take(further_, dynamic_cast<MembraneForce*>(&engine)) ||
         take(newtons_, dynamic_cast<NewtonIntegrator*>(&engine)) ||
         take(loops_, name == "InteractionLoop" || name == "LawDispatcher" ? &engine : nullptr) || mustNotRepeat(engine);
     const auto isIt = [&engine](const Known& one) { return one.engine == &engine; };
@@ -90,6 +92,15 @@ CentrifugalField* Surroundings::field(const Membrane& membrane, const Scene& sce
     for (const auto& one : fields_)
         if (!one.engine->dead && one.engine->membrane.get() == &membrane) return one.engine;
     return nullptr;
+}
+
+vector<shared_ptr<MembraneForce>> Surroundings::furtherForces(const Membrane& membrane, const Scene& scene) {
+    look(scene);
+    vector<shared_ptr<MembraneForce>> all;
+    for (const auto& one : further_)
+        if (!one.engine->dead && one.engine->membrane.get() == &membrane)
+            all.push_back(boost::static_pointer_cast<MembraneForce>(scene.engines[one.place]));
+    return all;
 }
 
 NewtonIntegrator* Surroundings::newton(const Scene& scene) {

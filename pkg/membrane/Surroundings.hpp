@@ -9,6 +9,7 @@ namespace yade {
 class CentrifugalField;
 class FreeHub;
 class Membrane;
+class MembraneForce;
 class MembraneForceEngine;
 class MembraneLedger;
 
@@ -19,6 +20,8 @@ public:
     /// Those that live and belong to an engine of forces; none: null.
     MembraneLedger* ledger(const MembraneForceEngine& forces, const Scene& scene);
     FreeHub* hub(const MembraneForceEngine& forces, const Scene& scene);
+    /// Further forces on a membrane, in their order.
+    vector<shared_ptr<MembraneForce>> furtherForces(const Membrane& membrane, const Scene& scene);
     CentrifugalField* field(const Membrane& membrane, const Scene& scene);
     /// The first that lives, else the last one: its gravity and damping count all the same.
     NewtonIntegrator* newton(const Scene& scene);
@@ -47,6 +50,7 @@ private:
     List<MembraneLedger> ledgers_;
     List<FreeHub> hubs_;
     List<CentrifugalField> fields_;
+    List<MembraneForce> further_;
     List<NewtonIntegrator> newtons_;
     List<Engine> loops_;    ///< InteractionLoops and LawDispatchers
     List<Engine> repeated_; ///< of those above, and of others that must not act twice, what stands there once more

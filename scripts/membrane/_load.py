@@ -21,6 +21,8 @@ CLASSES = (
     "MembranePhys",
     "Ip2_MembraneMat_MembraneMat_MembranePhys",
     "Law2_MembraneGeom_MembranePhys_Buckling",
+    "MembraneForce",
+    "SolarPressure",
     "MembraneForceEngine",
     "MembraneIntegrator",
     "CentrifugalField",

@@ -33,15 +33,15 @@ OF_BODIES = {
 }
 
 CLASSES = {name: getattr(membrane, name) for name in membrane.__all__ if name not in _load.ALIASES}
-HEADERS = Path(__file__).resolve().parents[2] / "pkg" / "membrane"
+SOURCES = Path(__file__).resolve().parents[2] / "pkg" / "membrane"
 DECLARATION = re.compile(r"YADE_CLASS_BASE_DOC\w*\((\w+),|\(\(([\w<>]+(?: \w+)?), (\w+), ")
 
 
 def _own_attributes():
-    """Types of the plugin's attributes by class and name, hidden ones too, as its headers tell."""
+    """Types of the plugin's attributes by class and name, hidden ones too, as its sources tell."""
     found = {}
-    for header in sorted(HEADERS.glob("*.hpp")):
-        for cls, kind, name in DECLARATION.findall(header.read_text()):
+    for file in sorted(SOURCES.glob("*.[ch]pp")):
+        for cls, kind, name in DECLARATION.findall(file.read_text()):
             if cls:
                 found[cls] = of_class = {}
             else:

@@ -57,7 +57,9 @@ def build(path):
     stepper = membrane.MembraneTimeStepper(
         forces=made.forces, fraction=0.3, timeStepUpdateInterval=5
     )
-    O.engines = [*O.engines, stepper]
+    further = [cls for name, cls in CLASSES.items() if issubclass(cls, membrane.MembraneForce)]
+    further.remove(membrane.MembraneForce)
+    O.engines = [*(cls(membrane=net) for cls in further), *O.engines, stepper]
 
 
 def run(path):

@@ -9,6 +9,11 @@ namespace {
 
 struct CreaseColumns {
     const double *length, *heightC, *heightD, *sign, *steepestLever, *slopeC, *slopeD;
+
+    CreaseColumns operator+(int first) const {
+        return {length + first,        heightC + first, heightD + first, sign + first,
+                steepestLever + first, slopeC + first,  slopeD + first};
+    }
 };
 
 /// CreaseRest with its functions computed beforehand.
@@ -39,9 +44,15 @@ inline void compute(int padded, const Components (&x)[4], const CreaseColumns& c
     }
 }
 
+/// The creases, to the functions below.
+struct CreaseTable {
+    const Arrangement<4>& order;
+    CreaseColumns columns;
+    const CreaseLaw& law;
+};
+
 template <bool conservative>
-inline void addBlocks(const CreaseTable& table, const CreaseLaw& law, int group, const Components& x,
-                      const Window& to) {
+inline void addBlocks(const CreaseTable& table, int group, const Components& x, const Window& to) {
     BlockVectors room[4], force[4];
     for (int i = table.order.groups[group]; i < table.order.groups[group + 1]; ++i) {
         const Block block = table.order.blocks[i];
@@ -49,47 +60,66 @@ inline void addBlocks(const CreaseTable& table, const CreaseLaw& law, int group,
         for (int k = 0; k < 4; ++k) node[k] = table.order.node[k].data() + block.begin;
         const Components corners[] = {cornerOf(block, node[0], x, room[0]), cornerOf(block, node[1], x, room[1]),
                                       cornerOf(block, node[2], x, room[2]), cornerOf(block, node[3], x, room[3])};
-        compute<conservative>(block.paddedCount(), corners,
-                              {table.length.data() + block.begin, table.heightC.data() + block.begin,
-                               table.heightD.data() + block.begin, table.sign.data() + block.begin,
-                               table.steepestLever.data() + block.begin, table.slopeC.data() + block.begin,
-                               table.slopeD.data() + block.begin},
-                              law, force);
+        compute<conservative>(block.paddedCount(), corners, table.columns + block.begin, table.law, force);
         for (int k = 0; k < 4; ++k) addCorner(block, force[k], node[k], to);
     }
 }
 
-MEMBRANE_VECTORISED void paperCreases(const CreaseTable& table, const CreaseLaw& law, int group, const Components& x,
-                                      const Window& to) {
-    addBlocks<false>(table, law, group, x, to);
+MEMBRANE_VECTORISED void paperCreases(const CreaseTable& table, int group, const Components& x, const Window& to) {
+    addBlocks<false>(table, group, x, to);
 }
-MEMBRANE_VECTORISED void conservativeCreases(const CreaseTable& table, const CreaseLaw& law, int group,
-                                             const Components& x, const Window& to) {
-    addBlocks<true>(table, law, group, x, to);
+MEMBRANE_VECTORISED void conservativeCreases(const CreaseTable& table, int group, const Components& x,
+                                             const Window& to) {
+    addBlocks<true>(table, group, x, to);
 }
 
 } // namespace
 
-CreaseTable creaseTable(const RestState& rest, const Partition& partition) {
+void CreaseForce::arrange(const Partition& partition) {
     std::vector<std::array<int, 4>> corners;
-    for (const Crease& c : rest.creases) corners.push_back({c.a, c.b, c.c, c.d});
-    CreaseTable table;
-    table.order = arrange<4>(corners, partition);
-    for (const int e : table.order.element) {
-        const CreaseRest r = e >= 0 ? rest.creases[e].rest : CreaseRest{0., 1., 1., 1.}; // padding without forces
-        table.length.push_back(r.length);
-        table.heightC.push_back(r.heightC);
-        table.heightD.push_back(r.heightD);
-        table.sign.push_back(r.sign);
-        table.steepestLever.push_back(e >= 0 ? r.steepestLever() : 1.);
-        table.slopeC.push_back(r.slopeC());
-        table.slopeD.push_back(r.slopeD());
+    for (const Crease& c : rest_->creases) corners.push_back({c.a, c.b, c.c, c.d});
+    order_ = membrane::arrange<4>(corners, partition);
+    for (Array* column : {&length_, &heightC_, &heightD_, &sign_, &steepestLever_, &slopeC_, &slopeD_}) column->clear();
+    for (const int e : order_.element) {
+        const CreaseRest r = e >= 0 ? rest_->creases[e].rest : CreaseRest{0., 1., 1., 1.}; // padding without forces
+        length_.push_back(r.length);
+        heightC_.push_back(r.heightC);
+        heightD_.push_back(r.heightD);
+        sign_.push_back(r.sign);
+        steepestLever_.push_back(e >= 0 ? r.steepestLever() : 1.);
+        slopeC_.push_back(r.slopeC());
+        slopeD_.push_back(r.slopeD());
     }
-    return table;
 }
 
-void addCreases(const CreaseTable& table, const CreaseLaw& law, int group, const Components& x, const Window& to) {
-    (law.conservative ? conservativeCreases : paperCreases)(table, law, group, x, to);
+GroupEnergy CreaseForce::add(int group, const GroupJob& job) {
+    const CreaseTable table{order_,
+                            {length_.data(), heightC_.data(), heightD_.data(), sign_.data(), steepestLever_.data(),
+                             slopeC_.data(), slopeD_.data()},
+                            law_};
+    (law_.conservative ? conservativeCreases : paperCreases)(table, group, job.x, job.own);
+    return {};
+}
+
+double CreaseForce::energyOf(const Crease& crease, const Points& x) const {
+    return creaseEnergy(crease.rest, law_, creaseState(crease, x).theta);
+}
+
+double CreaseForce::energy(const Points& x) const {
+    double sum = 0.;
+    for (const Crease& c : rest_->creases) sum += energyOf(c, x);
+    return sum;
+}
+
+void CreaseForce::addTo(LinearForces& to, const Points& x, const Points&) const {
+    to.creases.reserve(rest_->creases.size());
+    for (const Crease& c : rest_->creases) to.creases.push_back(stiffCrease(c, law_, x));
+}
+
+Culprit CreaseForce::culprit(const Moment& moment, bool) const {
+    Culprit most;
+    for (const Crease& c : rest_->creases) most.consider(energyOf(c, moment.x), "crease", {c.a, c.b});
+    return most;
 }
 
 } // namespace membrane

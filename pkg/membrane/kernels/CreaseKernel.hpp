@@ -1,21 +1,30 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
-#include "../mechanics/RestState.hpp"
-#include "Arrangement.hpp"
-#include "Coordinates.hpp"
+#include "ElementForce.hpp"
 
 namespace membrane {
 
-/// The creases in their arrangement.
-struct CreaseTable {
-    Arrangement<4> order;
-    Array length, heightC, heightD, sign; ///< as in CreaseRest
-    Array steepestLever, slopeC, slopeD;  ///< its functions
+/// The moments of the creases (7) and what balances them (8).
+class CreaseForce : public ArrangedForce<4> {
+public:
+    CreaseForce(const RestState& rest, const CreaseLaw& law) : rest_(&rest), law_(law) {}
+
+    const char* channel() const override { return "crease"; }
+    const char* title() const override { return "the creases"; }
+    Exchange exchange() const override { return Exchange::stores; }
+    void arrange(const Partition& partition) override;
+    GroupEnergy add(int group, const GroupJob& job) override;
+    double energy(const Points& x) const override;
+    void addTo(LinearForces& to, const Points& x, const Points& v) const override;
+    Culprit culprit(const Moment& moment, bool elastic) const override;
+
+private:
+    const RestState* rest_;
+    CreaseLaw law_;
+    Array length_, heightC_, heightD_, sign_; ///< as in CreaseRest
+    Array steepestLever_, slopeC_, slopeD_;   ///< its functions
+
+    double energyOf(const Crease& crease, const Points& x) const;
 };
-
-CreaseTable creaseTable(const RestState& rest, const Partition& partition);
-
-/// Adds the forces (7), (8) of a group's creases [N], at positions `x` [m].
-void addCreases(const CreaseTable& table, const CreaseLaw& law, int group, const Components& x, const Window& to);
 
 } // namespace membrane

@@ -2,61 +2,75 @@
 #include "MathFlags.hpp" // like a CREATE_CPP_LOCAL_LOGGER it keeps this out of unity builds
 
 #include "../mechanics/Drag.hpp"
-#include "BlockTransfer.hpp"
 #include "DragKernel.hpp"
 
 namespace membrane {
 namespace {
 
-inline void compute(int padded, const Components (&x)[3], const Components (&u)[3], double (&weight)[3][blockSize]) {
-    const Components a = x[0], b = x[1], c = x[2], ua = u[0], ub = u[1], uc = u[2];
+inline void compute(int padded, const OfCorners x, const OfCorners u, double (&weight)[3][blockSize]) {
 #pragma GCC ivdep
     for (int e = 0; e < padded; ++e) {
-        const Eigen::Vector3d corner = a.at(e);
-        const Eigen::Vector3d area = (b.at(e) - corner).cross(c.at(e) - corner);
-        weight[0][e] = dragWeight(area, ua.at(e));
-        weight[1][e] = dragWeight(area, ub.at(e));
-        weight[2][e] = dragWeight(area, uc.at(e));
+        const Eigen::Vector3d area = doubleArea(x.a.at(e), x.b.at(e), x.c.at(e));
+        weight[0][e] = dragWeight(area, u.a.at(e));
+        weight[1][e] = dragWeight(area, u.b.at(e));
+        weight[2][e] = dragWeight(area, u.c.at(e));
+    }
+}
+
+/// Adds the weights of one corner of a block's triangles to its nodes.
+inline void addWeights(const Block& block, const double* weight, const int* node, const WeightWindow& to) {
+    if (block.run) {
+        double* const target = to.values + (node[0] - to.first);
+        const int padded = block.paddedCount();
+#pragma GCC ivdep
+        for (int e = 0; e < padded; ++e) target[e] += weight[e];
+    } else {
+        for (int e = 0; e < block.count(); ++e) to.values[node[e] - to.first] += weight[e];
+    }
+}
+
+MEMBRANE_VECTORISED void addDragWeights(const Arrangement<3>& order, int group, const GroupJob& job) {
+    BlockVectors roomX[3], roomU[3];
+    double added[3][blockSize];
+    for (int i = order.groups[group]; i < order.groups[group + 1]; ++i) {
+        const Block block = order.blocks[i];
+        compute(block.paddedCount(), ofCorners(order, block, job.x, roomX), ofCorners(order, block, job.u, roomU),
+                added);
+        for (int k = 0; k < 3; ++k) {
+            clearPadding(block, added[k]);
+            addWeights(block, added[k], order.node[k].data() + block.begin, job.viscous);
+        }
     }
 }
 
 } // namespace
 
-DragTable dragTable(const std::vector<Eigen::Vector3i>& triangles, const Partition& partition) {
-    std::vector<std::array<int, 3>> corners;
-    corners.reserve(triangles.size());
-    for (const Eigen::Vector3i& t : triangles) {
-        corners.push_back({t[0], t[1], t[2]});
-        std::sort(corners.back().begin(), corners.back().end());
-    }
-    return {arrange<3>(corners, partition)};
+GroupEnergy DragForce::add(int group, const GroupJob& job) {
+    addDragWeights(order_, group, job);
+    return {};
 }
 
-MEMBRANE_VECTORISED void addDragWeights(const DragTable& table, int group, const Components& x, const Components& u,
-                                        const WeightWindow& to) {
-    BlockVectors roomX[3], roomU[3];
-    double added[3][blockSize];
-    for (int i = table.order.groups[group]; i < table.order.groups[group + 1]; ++i) {
-        const Block block = table.order.blocks[i];
-        const int* node[3];
-        for (int k = 0; k < 3; ++k) node[k] = table.order.node[k].data() + block.begin;
-        const Components at[] = {cornerOf(block, node[0], x, roomX[0]), cornerOf(block, node[1], x, roomX[1]),
-                                 cornerOf(block, node[2], x, roomX[2])};
-        const Components moving[] = {cornerOf(block, node[0], u, roomU[0]), cornerOf(block, node[1], u, roomU[1]),
-                                     cornerOf(block, node[2], u, roomU[2])};
-        compute(block.paddedCount(), at, moving, added);
-        for (int k = 0; k < 3; ++k) {
-            clearPadding(block, added[k]);
-            if (block.run) {
-                double* const target = to.values + (node[k][0] - to.first);
-                const int padded = block.paddedCount();
-#pragma GCC ivdep
-                for (int e = 0; e < padded; ++e) target[e] += added[k][e];
-            } else {
-                for (int e = 0; e < block.count(); ++e) to.values[node[k][e] - to.first] += added[k][e];
-            }
-        }
-    }
+double DragForce::viscosity() const {
+    return dragFactor(airDensity_);
+}
+
+void DragForce::addTo(LinearForces& to, const Points& x, const Points& v) const {
+    forTriangles(x, [&](const Eigen::Vector3i& triangle, const Eigen::Vector3d& area) {
+        for (const int node : {triangle[0], triangle[1], triangle[2]})
+            to.addDrag(node, cornerDragSlope(airDensity_, area, v[node]));
+    });
+}
+
+Culprit DragForce::culprit(const Moment& moment, bool) const {
+    std::vector<double> weights(moment.x.size(), 0.);
+    forTriangles(moment.x, [&](const Eigen::Vector3i& triangle, const Eigen::Vector3d& area) {
+        for (const int node : {triangle[0], triangle[1], triangle[2]})
+            weights[node] += dragWeight(area, moment.v[node]);
+    });
+    Culprit most;
+    for (std::size_t i = 0; i < weights.size(); ++i)
+        most.consider(-nodeDrag(viscosity(), weights[i], moment.v[i]).dot(moment.v[i]), "node", {static_cast<int>(i)});
+    return most;
 }
 
 } // namespace membrane

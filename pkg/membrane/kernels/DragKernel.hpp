@@ -1,27 +1,26 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
-#include "Arrangement.hpp"
-#include "Coordinates.hpp"
-#include <Eigen/Core>
+#include "TriangleForce.hpp"
 
 namespace membrane {
 
-/// The triangles in their arrangement; their corners in ascending order, for drag does not ask which way round they
-/// run.
-struct DragTable {
-    Arrangement<3> order;
+/// Air drag (10) on the triangles.
+class DragForce : public TriangleForce {
+public:
+    /// \param airDensity [kg/m³]
+    DragForce(const std::vector<Eigen::Vector3i>& triangles, double airDensity)
+        : TriangleForce(triangles), airDensity_(airDensity) {}
+
+    const char* channel() const override { return "drag"; }
+    const char* title() const override { return "air drag"; }
+    Exchange exchange() const override { return Exchange::loses; }
+    GroupEnergy add(int group, const GroupJob& job) override;
+    double viscosity() const override;
+    void addTo(LinearForces& to, const Points& x, const Points& v) const override;
+    Culprit culprit(const Moment& moment, bool elastic) const override;
+
+private:
+    double airDensity_;
 };
-
-DragTable dragTable(const std::vector<Eigen::Vector3i>& triangles, const Partition& partition);
-
-/// Where drag weights are added: on the node `first` and those that follow, or nowhere.
-struct WeightWindow {
-    double* values = nullptr;
-    long first = 0;
-};
-
-/// Adds the drag weights of a group's triangles [m³/s] to their nodes, at positions `x` [m] and velocities `u` [m/s].
-void addDragWeights(const DragTable& table, int group, const Components& x, const Components& u,
-                    const WeightWindow& to);
 
 } // namespace membrane

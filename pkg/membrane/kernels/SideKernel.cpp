@@ -34,7 +34,7 @@ inline void compute(int padded, const Components& xa, const Components& xb, cons
         const double length = span.norm();
         const double inverse = length > 0. ? 1. / length : 0.;
         double pull = springs ? sideTension(length, c.stiffness[e], c.restLength[e], c.critical[e]) : 0.;
-        double brake = brakes ? c.damping[e] * span.dot(ub.at(e) - ua.at(e)) * inverse : 0.;
+        double brake = brakes ? sideDamping(c.damping[e], span, ub.at(e) - ua.at(e), inverse) : 0.;
         if (wanted == Wanted::together) pull += brake;
         pull *= inverse;
         brake *= inverse;
@@ -50,6 +50,13 @@ inline void compute(int padded, const Components& xa, const Components& xb, cons
     }
 }
 
+/// The sides of the film, to the functions below.
+struct SideTable {
+    const Arrangement<2>& order;
+    const std::vector<int>& firsts; ///< see SideForces::constants_
+    SideColumns columns;
+};
+
 /// Adds a block's values, lane by lane, to a sum; those of padding must be 0.
 inline void addUp(const Block& block, const double* value, double (&sum)[lanes]) {
     for (int e = 0; e < block.paddedCount(); e += lanes)
@@ -61,7 +68,8 @@ inline double total(const double (&sum)[lanes]) {
     return all;
 }
 
-template <Wanted wanted, Sums sums> inline SideEnergy addBlocks(SideTable& table, int group, const SideJob& job) {
+template <Wanted wanted, Sums sums>
+inline GroupEnergy addBlocks(const SideTable& table, int group, const GroupJob& job) {
     constexpr bool springs = wanted != Wanted::brakes, brakes = wanted != Wanted::springs;
     constexpr bool brakesApart = wanted == Wanted::brakes || wanted == Wanted::apart;
     double stored[lanes] = {}, missed[lanes] = {};
@@ -69,10 +77,10 @@ template <Wanted wanted, Sums sums> inline SideEnergy addBlocks(SideTable& table
     BlockVectors gathered[4];
     for (int i = table.order.groups[group]; i < table.order.groups[group + 1]; ++i) {
         const Block block = table.order.blocks[i];
-        const int first = table.constants[i];
-        const SideColumns constants{table.stiffness.data() + first, table.restLength.data() + first,
-                                    table.critical.data() + first, table.damping.data() + first,
-                                    sums != Sums::none ? table.length.data() + block.begin : nullptr};
+        const int first = table.firsts[i];
+        const SideColumns constants{table.columns.stiffness + first, table.columns.restLength + first,
+                                    table.columns.critical + first, table.columns.damping + first,
+                                    sums != Sums::none ? table.columns.length + block.begin : nullptr};
         const int* const a = table.order.node[0].data() + block.begin;
         const int* const b = table.order.node[1].data() + block.begin;
         compute<wanted, sums>(block.paddedCount(), cornerOf(block, a, job.x, gathered[0]),
@@ -90,8 +98,8 @@ template <Wanted wanted, Sums sums> inline SideEnergy addBlocks(SideTable& table
             subtractCorner(block, results.pull, b, job.elastic);
         }
         if (brakesApart) {
-            addCorner(block, results.brake, a, job.damping);
-            subtractCorner(block, results.brake, b, job.damping);
+            addCorner(block, results.brake, a, job.own);
+            subtractCorner(block, results.brake, b, job.own);
         }
         if (job.prefetch) job.prefetch->next();
         if (sums == Sums::energies) addUp(block, results.energy, stored);
@@ -115,7 +123,7 @@ bool areAlike(const SideConstants& a, const SideConstants& b) {
 
 // One function for each use: the compiler makes vectorised versions of functions, not of templates.
 #define MEMBRANE_SIDES(name, ...)                                                                                      \
-    MEMBRANE_VECTORISED SideEnergy name(SideTable& table, int group, const SideJob& job) {                             \
+    MEMBRANE_VECTORISED GroupEnergy name(const SideTable& table, int group, const GroupJob& job) {                     \
         return addBlocks<__VA_ARGS__>(table, group, job);                                                              \
     }
 MEMBRANE_SIDES(springs, Wanted::springs, Sums::none)
@@ -128,107 +136,167 @@ MEMBRANE_SIDES(apartWithWorks, Wanted::apart, Sums::works)
 MEMBRANE_SIDES(apartWithEnergies, Wanted::apart, Sums::energies)
 #undef MEMBRANE_SIDES
 
-SideEnergy addFilm(SideTable& table, int group, const SideJob& job) {
-    const bool elastic = job.elastic.isThere(), damped = job.damping.isThere();
-    if (!elastic) return brakes(table, group, job);
-    const auto fitting = [&](auto none, auto works, auto energies) {
-        return job.sums == Sums::none ? none : job.sums == Sums::works ? works : energies;
-    };
-    if (!damped) return fitting(springs, springsWithWorks, springsWithEnergies)(table, group, job);
-    if (job.sums == Sums::none && job.elastic.values.x == job.damping.values.x) return together(table, group, job);
-    return fitting(apart, apartWithWorks, apartWithEnergies)(table, group, job);
-}
-
 } // namespace
 
-SideTable sideTable(const RestState& rest, const std::vector<double>& damping, const Partition& partition) {
-    SideTable table;
-    std::vector<std::array<int, 2>> film;
-    std::vector<int> sideOf;
-    std::vector<std::array<int, 2>> cables;
-    std::vector<int> cableOf;
-    for (std::size_t i = 0; i < rest.sides.size(); ++i) {
-        const Side& s = rest.sides[i];
+void SideForces::arrange(const Partition& partition) {
+    std::vector<std::array<int, 2>> film, cables;
+    std::vector<int> sideOf, cableOf;
+    for (std::size_t i = 0; i < rest_->sides.size(); ++i) {
+        const Side& s = rest_->sides[i];
         const bool cable = s.kind == SideKind::cable;
         (cable ? cables : film).push_back({s.a, s.b});
         (cable ? cableOf : sideOf).push_back(static_cast<int>(i));
     }
-    table.order = arrange<2>(film, partition, 2);
-    for (int& e : table.order.element)
+    order_ = membrane::arrange<2>(film, partition, 2);
+    for (int& e : order_.element)
         if (e >= 0) e = sideOf[e];
+    for (Array* column : {&stiffness_, &restLength_, &critical_, &coefficient_, &length_}) column->clear();
+    constants_.clear();
+    cableLength_.clear();
+    arrangeConstants();
+    arrangeCables(membrane::arrange<2>(cables, partition), cableOf);
+}
+
+void SideForces::arrangeConstants() {
     const auto constantsOf = [&](int e) -> SideConstants {
         if (e < 0) return {0., 1., 0., 0.};
-        const Side& s = rest.sides[e];
-        return {s.stiffness, s.restLength, s.critical, damping.empty() ? 0. : damping[e]};
+        const Side& s = rest_->sides[e];
+        return {s.stiffness, s.restLength, s.critical, damping_.empty() ? 0. : damping_[e]};
     };
-    const auto append = [&table](const SideConstants& c) {
-        table.stiffness.push_back(c[0]);
-        table.restLength.push_back(c[1]);
-        table.critical.push_back(c[2]);
-        table.damping.push_back(c[3]);
+    const auto append = [this](const SideConstants& c) {
+        stiffness_.push_back(c[0]);
+        restLength_.push_back(c[1]);
+        critical_.push_back(c[2]);
+        coefficient_.push_back(c[3]);
     };
     std::vector<std::pair<SideConstants, int>> shared; // few; the last are the likeliest
-    for (Block& block : table.order.blocks) {
-        const SideConstants first = constantsOf(table.order.element[block.begin]);
+    for (Block& block : order_.blocks) {
+        const SideConstants first = constantsOf(order_.element[block.begin]);
         bool uniform = block.count() > blockSize / 2 && shared.size() < 64;
         for (int e = block.begin; uniform && e < block.end; ++e)
-            uniform = areAlike(first, constantsOf(table.order.element[e]));
+            uniform = areAlike(first, constantsOf(order_.element[e]));
         if (uniform) {
             const auto found =
                 std::find_if(shared.rbegin(), shared.rend(), [&](const auto& s) { return areAlike(first, s.first); });
             block.uniform = true;
             if (found != shared.rend()) {
-                table.constants.push_back(found->second);
+                constants_.push_back(found->second);
                 continue;
             }
-            shared.emplace_back(first, static_cast<int>(table.stiffness.size()));
+            shared.emplace_back(first, static_cast<int>(stiffness_.size()));
         }
-        table.constants.push_back(static_cast<int>(table.stiffness.size()));
+        constants_.push_back(static_cast<int>(stiffness_.size()));
         if (uniform)
             for (int e = 0; e < blockSize; ++e) append(first);
         else
-            for (int e = block.begin; e < block.paddedEnd(); ++e) append(constantsOf(table.order.element[e]));
+            for (int e = block.begin; e < block.paddedEnd(); ++e) append(constantsOf(order_.element[e]));
     }
-    const Arrangement<2> order = arrange<2>(cables, partition);
-    for (std::size_t g = 0; g + 1 < order.groups.size(); ++g) {
-        table.cableGroups.push_back(static_cast<int>(table.cables.size()));
-        for (int b = order.groups[g]; b < order.groups[g + 1]; ++b)
-            for (int e = order.blocks[b].begin; e < order.blocks[b].end; ++e)
-                table.cables.push_back(cableOf[order.element[e]]);
-    }
-    table.cableGroups.push_back(static_cast<int>(table.cables.size()));
-    return table;
 }
 
-SideEnergy addSides(SideTable& table, const RestState& rest, const std::vector<double>& damping, int group,
-                    const SideJob& job) {
-    const bool elastic = job.elastic.isThere(), damped = job.damping.isThere();
-    if (!elastic && !damped) return {};
-    SideEnergy sum = addFilm(table, group, job);
-    for (int i = table.cableGroups[group]; i < table.cableGroups[group + 1]; ++i) {
-        const Side& s = rest.sides[table.cables[i]];
-        const Eigen::Vector3d span = job.x.at(s.b) - job.x.at(s.a);
-        const double length = span.norm();
-        if (job.sums != Sums::none) {
-            sum.elastic += sideEnergy(length, s.stiffness, s.restLength, s.critical);
-            sum.kink += kinkEnergy(table.cableLength[i], length, s.stiffness, s.critical);
-            table.cableLength[i] = length;
-        }
-        if (!(length > s.restLength)) continue; // slack: neither pulls nor is damped
-        const double tension = sideTension(length, s.stiffness, s.restLength, s.critical);
-        if (elastic) {
-            const Eigen::Vector3d force = tension / length * span;
-            job.elastic.add(s.a, force);
-            job.elastic.add(s.b, -force);
-        }
-        if (damped) {
-            const double rate = span.dot(job.u.at(s.b) - job.u.at(s.a)) / length;
-            const Eigen::Vector3d force = cableDamping(damping[table.cables[i]], rate, tension) / length * span;
-            job.damping.add(s.a, force);
-            job.damping.add(s.b, -force);
-        }
+void SideForces::arrangeCables(const Arrangement<2>& order, const std::vector<int>& cableOf) {
+    cables_.clear();
+    cableGroups_.clear();
+    for (std::size_t g = 0; g + 1 < order.groups.size(); ++g) {
+        cableGroups_.push_back(static_cast<int>(cables_.size()));
+        for (int b = order.groups[g]; b < order.groups[g + 1]; ++b)
+            for (int e = order.blocks[b].begin; e < order.blocks[b].end; ++e)
+                cables_.push_back(cableOf[order.element[e]]);
     }
+    cableGroups_.push_back(static_cast<int>(cables_.size()));
+}
+
+void SideForces::widen(int group, int& first, int& last) const {
+    ArrangedForce<2>::widen(group, first, last);
+    for (int i = cableGroups_[group]; i < cableGroups_[group + 1]; ++i) {
+        const Side& s = rest_->sides[cables_[i]];
+        first = std::min(first, s.a);
+        last = std::max(last, s.b + 1);
+    }
+}
+
+GroupEnergy SideForces::add(int group, const GroupJob& job) {
+    if (!job.elastic.isThere() && damping_.empty()) return {};
+    GroupEnergy sum = addFilm(group, job);
+    for (int i = cableGroups_[group]; i < cableGroups_[group + 1]; ++i) addCable(i, job, sum);
     return sum;
+}
+
+GroupEnergy SideForces::addFilm(int group, const GroupJob& job) {
+    const SideTable table{
+        order_,
+        constants_,
+        {stiffness_.data(), restLength_.data(), critical_.data(), coefficient_.data(), length_.data()}};
+    if (!job.elastic.isThere()) return brakes(table, group, job);
+    const auto fitting = [&](auto none, auto works, auto energies) {
+        return job.sums == Sums::none ? none : job.sums == Sums::works ? works : energies;
+    };
+    if (damping_.empty()) return fitting(springs, springsWithWorks, springsWithEnergies)(table, group, job);
+    if (job.sums == Sums::none && job.elastic.values.x == job.own.values.x) return together(table, group, job);
+    return fitting(apart, apartWithWorks, apartWithEnergies)(table, group, job);
+}
+
+void SideForces::addCable(int i, const GroupJob& job, GroupEnergy& sum) {
+    const Side& s = rest_->sides[cables_[i]];
+    const Eigen::Vector3d span = job.x.at(s.b) - job.x.at(s.a);
+    const double length = span.norm();
+    if (job.sums != Sums::none) {
+        sum.elastic += sideEnergy(length, s.stiffness, s.restLength, s.critical);
+        sum.kink += kinkEnergy(cableLength_[i], length, s.stiffness, s.critical);
+        cableLength_[i] = length;
+    }
+    if (!(length > s.restLength)) return; // slack: neither pulls nor is damped
+    const double tension = sideTension(length, s.stiffness, s.restLength, s.critical);
+    if (job.elastic.isThere()) {
+        const Eigen::Vector3d force = tension / length * span;
+        job.elastic.add(s.a, force);
+        job.elastic.add(s.b, -force);
+    }
+    if (damping_.empty()) return;
+    const double rate = span.dot(job.u.at(s.b) - job.u.at(s.a)) / length;
+    const Eigen::Vector3d force = cableDamping(damping_[cables_[i]], rate, tension) / length * span;
+    job.own.add(s.a, force);
+    job.own.add(s.b, -force);
+}
+
+void SideForces::addTo(LinearForces& to, const Points& x, const Points&) const {
+    to.sides.reserve(rest_->sides.size());
+    for (std::size_t i = 0; i < rest_->sides.size(); ++i)
+        to.addSide(tautSide(rest_->sides[i], damping_.empty() ? 0. : damping_[i], x));
+}
+
+Culprit SideForces::culprit(const Moment& moment, bool elastic) const {
+    Culprit most;
+    for (const Side& s : rest_->sides) {
+        const double now = (moment.x[s.b] - moment.x[s.a]).norm();
+        const double then = (moment.before[s.b] - moment.before[s.a]).norm(), change = now - then;
+        const double mean = 0.5 * (sideTension(now, s.stiffness, s.restLength, s.critical) +
+                                   sideTension(then, s.stiffness, s.restLength, s.critical));
+        most.consider(elastic ? std::abs(mean * change) : s.stiffness * change * change, "side", {s.a, s.b});
+    }
+    return most;
+}
+
+void SideForces::appendMemory(std::vector<double>& lengths) const {
+    const std::size_t first = lengths.size();
+    lengths.resize(first + rest_->sides.size());
+    for (std::size_t e = 0; e < order_.size(); ++e)
+        if (order_.element[e] >= 0) lengths[first + order_.element[e]] = length_[e];
+    for (std::size_t i = 0; i < cables_.size(); ++i) lengths[first + cables_[i]] = cableLength_[i];
+}
+
+void SideForces::setMemory(const double* lengths) {
+    length_.resize(order_.size(), 1.);
+    for (std::size_t e = 0; e < order_.size(); ++e)
+        if (order_.element[e] >= 0) length_[e] = lengths[order_.element[e]];
+    cableLength_.resize(cables_.size());
+    for (std::size_t i = 0; i < cables_.size(); ++i) cableLength_[i] = lengths[cables_[i]];
+}
+
+void SideForces::setMemoryFrom(const Points& x) {
+    std::vector<double> lengths;
+    lengths.reserve(rest_->sides.size());
+    for (const Side& s : rest_->sides) lengths.push_back((x[s.b] - x[s.a]).norm());
+    setMemory(lengths.data());
 }
 
 } // namespace membrane

@@ -4,6 +4,7 @@
 #ifdef _OPENMP // a YADE tree may be built without
 #include <omp.h>
 #endif
+#include <stdexcept>
 
 namespace membrane {
 namespace {
@@ -21,52 +22,49 @@ void addWindow(const Coordinates& window, int first, int begin, int end, Coordin
     }
 }
 
-/// Widens first..last-1 to all nodes that a group writes to, those of padding included.
-template <std::size_t K> void widen(const Arrangement<K>& order, int group, int& first, int& last) {
-    for (int b = order.groups[group]; b < order.groups[group + 1]; ++b)
-        for (const auto& nodes : order.node)
-            for (int e = order.blocks[b].begin; e < order.blocks[b].paddedEnd(); ++e) {
-                first = std::min(first, nodes[e]);
-                last = std::max(last, nodes[e] + 1);
-            }
-}
-
-void add(MotionSums& to, const MotionSums& more) {
-    for (int k = 0; k < 3; ++k) {
-        to.power[k] += more.power[k];
-        to.arriving[k] += more.arriving[k];
-    }
-    to.torque += more.torque;
-    to.kinetic += more.kinetic;
-    to.potential += more.potential;
-    to.angularMomentum += more.angularMomentum;
-}
-
 } // namespace
 
-void Sweep::prepare(const RestState& rest, const std::vector<Eigen::Vector3i>& triangles, const Laws& laws,
-                    const std::vector<double>& masses, const std::vector<char>& owned, int parts, int chunkSize) {
-    rest_ = &rest;
-    sideCount_ = rest.sides.size();
-    laws_ = laws;
+void Sweep::prepare(const ElementForces& forces, const std::vector<double>& masses, const std::vector<char>& owned,
+                    int parts, int chunkSize) {
+    forces_ = forces;
+    nameChannels();
     mass_.assign(masses.begin(), masses.end());
     const int nodes = static_cast<int>(masses.size());
     partition_ = partition(nodes, parts, chunkSize);
-    sides_ = sideTable(rest, laws.damping, partition_);
-    creases_ = laws.crease.bending > 0. ? creaseTable(rest, partition_) : creaseTable(RestState(), partition_);
-    drag_ = dragTable(laws.airDensity > 0. ? triangles : std::vector<Eigen::Vector3i>(), partition_);
+    for (const auto& force : forces_) force->arrange(partition_);
     foreign_.clear();
     for (int i = 0; i < nodes; ++i)
         if (!owned[i]) foreign_.push_back(i);
     for (Coordinates* c : {&x, &v, &u})
         if (c->size() != masses.size()) c->assign(masses.size());
     elastic_.assign(masses.size());
-    damping_ = crease_ = Coordinates();
-    dragWeight_.assign(laws.airDensity > 0. ? masses.size() : 0, 0.);
-    hasLengths_ = false;
+    own_.assign(channels_.size(), Coordinates());
+    dragWeight_.assign(dragFactor_ > 0. ? masses.size() : 0, 0.);
+    remembers_ = false;
     partSums_.assign(parts, {});
     makeBorders();
     makeReach();
+}
+
+void Sweep::nameChannels() {
+    channels_ = {"crease", "damping", "drag"};
+    exchange_ = {Exchange::stores, Exchange::loses, Exchange::loses};
+    channelOf_.clear();
+    dragFactor_ = 0.;
+    for (const auto& force : forces_) {
+        const std::string name = force->channel();
+        const auto place = std::find(channels_.begin(), channels_.end(), name);
+        channelOf_.push_back(static_cast<int>(place - channels_.begin()));
+        if (place == channels_.end()) {
+            channels_.push_back(name);
+            exchange_.push_back(force->exchange());
+        }
+        if (channels_.size() > maxChannels)
+            throw std::invalid_argument("Membrane: more than " + std::to_string(maxChannels) + " kinds of forces");
+        if (!(force->viscosity() > 0.)) continue;
+        if (dragFactor_ > 0.) throw std::invalid_argument("Membrane: two kinds of drag");
+        dragFactor_ = force->viscosity();
+    }
 }
 
 void Sweep::makeBorders() {
@@ -75,27 +73,21 @@ void Sweep::makeBorders() {
         Border& border = borders_[part];
         border.first = partition_.endNode(part);
         border.last = border.first;
-        widen(sides_.order, part, border.first, border.last);
-        widen(creases_.order, part, border.first, border.last);
-        widen(drag_.order, part, border.first, border.last);
-        for (int i = sides_.cableGroups[part]; i < sides_.cableGroups[part + 1]; ++i) {
-            const Side& s = rest_->sides[sides_.cables[i]];
-            border.first = std::min(border.first, s.a);
-            border.last = std::max(border.last, s.b + 1);
-        }
+        for (const auto& force : forces_) force->widen(part, border.first, border.last);
         border.elastic.assign(border.last - border.first);
+        border.own.assign(channels_.size(), Coordinates());
         border.dragWeight.assign(dragWeight_.empty() ? 0 : border.last - border.first, 0.);
     }
 }
 
-/// Room for the forces of damping and creases by themselves; made before threads begin, which must not throw.
+/// Room for the forces of each channel by themselves; made before threads begin, which must not throw.
 void Sweep::keepApart() {
-    if (damping_.size()) return;
-    damping_.assign(x.size());
-    crease_.assign(x.size());
-    for (Border& border : borders_) {
-        border.damping.assign(border.last - border.first);
-        border.crease.assign(border.last - border.first);
+    if (own_[dampingChannel].size()) return;
+    for (std::size_t k = 0; k < channels_.size(); ++k) {
+        if (k == dragChannel) continue;
+        own_[k].assign(x.size());
+        for (Border& border : borders_)
+            if (!border.own.empty()) border.own[k].assign(border.last - border.first);
     }
 }
 
@@ -105,7 +97,7 @@ void Sweep::makeReach() {
     if (partition_.chunks.back() <= cached) return;
     int first = 0, last = 0;
     for (int chunk = 0; chunk < partition_.chunkCount(); ++chunk) {
-        widen(sides_.order, partition_.partCount() + chunk, first, last);
+        forces_.front()->widen(partition_.partCount() + chunk, first, last);
         reach_.push_back(last);
     }
 }
@@ -114,7 +106,7 @@ void Sweep::makeReach() {
 void Sweep::prefetchAfter(int chunk, int part, Prefetch& prefetch) {
     if (reach_.empty()) return;
     const int group = partition_.partCount() + chunk;
-    prefetch.start(sides_.order.groups[group + 1] - sides_.order.groups[group]);
+    prefetch.start(forces_.front()->blocks(group));
     if (chunk + 1 >= partition_.parts[part + 1]) return;
     prefetch.add(Components(x), reach_[chunk], reach_[chunk + 1]);
     prefetch.add(Components(u), reach_[chunk], reach_[chunk + 1]);
@@ -123,18 +115,28 @@ void Sweep::prefetchAfter(int chunk, int part, Prefetch& prefetch) {
     prefetch.add(mass_.data(), partition_.chunks[chunk + 1], partition_.chunks[chunk + 2]);
 }
 
-SideEnergy Sweep::addGroup(int group, const Targets& to, const SweepStep& now, Prefetch* prefetch) {
-    SideJob job;
+GroupEnergy Sweep::addGroup(int group, const Targets& to, const SweepStep& now, Prefetch* prefetch) {
+    GroupJob job;
     job.x = Components(x);
     job.u = Components(u);
     if (now.elastic) job.elastic = to.elastic;
-    if (!laws_.damping.empty()) job.damping = to.damping;
+    job.viscous = to.dragWeight;
     job.sums = now.sums;
     job.prefetch = prefetch;
-    const SideEnergy energy = addSides(sides_, *rest_, laws_.damping, group, job);
-    if (creases_.order.size()) addCreases(creases_, laws_.crease, group, job.x, to.crease);
-    if (drag_.order.size()) addDragWeights(drag_, group, job.x, job.u, to.dragWeight);
-    return energy;
+    GroupEnergy sum;
+    for (std::size_t f = 0; f < forces_.size(); ++f) {
+        job.own = to.own[channelOf_[f]];
+        sum.add(forces_[f]->add(group, job));
+        job.prefetch = nullptr;
+    }
+    return sum;
+}
+
+/// Where the forces go: to those of the strain energy, or each channel to its own.
+void Sweep::Targets::choose(Coordinates& all, std::vector<Coordinates>& each, bool apart, int first) {
+    elastic = Window(all, first);
+    for (std::size_t k = 0; k < each.size(); ++k)
+        if (k != dragChannel) own[k] = apart ? Window(each[k], first) : elastic;
 }
 
 void Sweep::computeBorder(int part, const SweepStep& now) {
@@ -142,14 +144,10 @@ void Sweep::computeBorder(int part, const SweepStep& now) {
     partSums_[part] = {};
     if (border.first == border.last) return;
     Targets to;
+    to.choose(border.elastic, border.own, now.apart, border.first);
     setZero(border.elastic);
-    to.elastic = to.damping = to.crease = Window(border.elastic, border.first);
-    if (now.apart) {
-        setZero(border.damping);
-        setZero(border.crease);
-        to.damping = Window(border.damping, border.first);
-        to.crease = Window(border.crease, border.first);
-    }
+    if (now.apart)
+        for (Coordinates& own : border.own) setZero(own);
     std::fill(border.dragWeight.begin(), border.dragWeight.end(), 0.);
     if (!border.dragWeight.empty()) to.dragWeight = {border.dragWeight.data(), border.first};
     partSums_[part].energy = addGroup(part, to, now, nullptr);
@@ -160,10 +158,8 @@ void Sweep::addBorders(int part, bool apart) {
         const int begin = std::max(border.first, partition_.firstNode(part));
         const int end = std::min(border.last, partition_.endNode(part));
         addWindow(border.elastic, border.first, begin, end, elastic_);
-        if (apart) {
-            addWindow(border.damping, border.first, begin, end, damping_);
-            addWindow(border.crease, border.first, begin, end, crease_);
-        }
+        for (std::size_t k = 0; apart && k < border.own.size(); ++k)
+            if (k != dragChannel) addWindow(border.own[k], border.first, begin, end, own_[k]);
         if (!dragWeight_.empty())
             for (int i = begin; i < end; ++i) dragWeight_[i] += border.dragWeight[i - border.first];
     }
@@ -172,11 +168,7 @@ void Sweep::addBorders(int part, bool apart) {
 void Sweep::sweepPart(int part, const SweepStep& now) {
     PartSums& sums = partSums_[part];
     Targets to;
-    to.elastic = to.damping = to.crease = Window(elastic_);
-    if (now.apart) {
-        to.damping = Window(damping_);
-        to.crease = Window(crease_);
-    }
+    to.choose(elastic_, own_, now.apart, 0);
     if (!dragWeight_.empty()) to.dragWeight = {dragWeight_.data(), 0};
 
     Motion motion;
@@ -184,12 +176,12 @@ void Sweep::sweepPart(int part, const SweepStep& now) {
     motion.v = Components(v);
     motion.u = Components(u);
     motion.elastic = to.elastic.values;
-    motion.damping = to.damping.values;
-    motion.crease = to.crease.values;
+    for (const Window& own : to.own) motion.own[motion.channels++] = own.values;
+    motion.channels = static_cast<int>(channels_.size());
     motion.dragWeight = to.dragWeight.values;
     motion.mass = mass_.data();
     motion.dt = now.dt;
-    motion.airDensity = laws_.airDensity;
+    motion.dragFactor = dragFactor_;
     motion.localDamping = now.localDamping;
     motion.gravity = now.gravity;
     motion.centrifugal = now.centrifugal;
@@ -198,10 +190,7 @@ void Sweep::sweepPart(int part, const SweepStep& now) {
     if (partition_.partCount() > 1) addBorders(part, now.apart);
     for (int chunk = partition_.parts[part]; chunk < partition_.parts[part + 1]; ++chunk) {
         prefetchAfter(chunk, part, prefetch);
-        const SideEnergy energy =
-            addGroup(partition_.partCount() + chunk, to, now, reach_.empty() ? nullptr : &prefetch);
-        sums.energy.elastic += energy.elastic;
-        sums.energy.kink += energy.kink;
+        sums.energy.add(addGroup(partition_.partCount() + chunk, to, now, reach_.empty() ? nullptr : &prefetch));
         if (!now.move) continue;
         int begin = partition_.chunks[chunk];
         const int end = partition_.chunks[chunk + 1];
@@ -223,15 +212,8 @@ bool Sweep::step(const SweepStep& now) {
         clearForces();
     for (const auto& [node, f] : outside) elastic_.add(node, f);
     moved_ = now.move;
-    if (now.sums != Sums::none && !hasLengths_) {
-        std::vector<double> before(rest_->sides.size()); // from where the nodes were a step ago
-        for (std::size_t i = 0; i < before.size(); ++i) {
-            const Side& s = rest_->sides[i];
-            before[i] = ((x.at(s.b) - now.dt * v.at(s.b)) - (x.at(s.a) - now.dt * v.at(s.a))).norm();
-        }
-        setLengths(before);
-    }
-    if (now.sums == Sums::none) hasLengths_ = false;
+    if (now.sums != Sums::none && !remembers_) recall(now.dt);
+    if (now.sums == Sums::none) remembers_ = false;
 
     const int parts = partition_.partCount();
     if (parts == 1) {
@@ -254,51 +236,81 @@ bool Sweep::step(const SweepStep& now) {
     energy_ = {};
     double lost = 0.;
     for (const PartSums& sums : partSums_) {
-        add(motion_, sums.motion);
-        energy_.elastic += sums.energy.elastic;
-        energy_.kink += sums.energy.kink;
+        motion_.add(sums.motion);
+        energy_.add(sums.energy);
         lost += sums.lost;
     }
     return lost == 0.;
 }
 
-Eigen::Vector3d Sweep::dragForce(int node) const {
-    if (dragWeight_.empty()) return Eigen::Vector3d::Zero();
-    return nodeDrag(laws_.airDensity, dragWeight_[node], u.at(node));
+/// Takes what the kinks are counted from, from where the nodes were a step ago.
+void Sweep::recall(double dt) {
+    Points before(x.size());
+    for (std::size_t i = 0; i < before.size(); ++i) before[i] = x.at(i) - dt * v.at(i);
+    for (const auto& force : forces_) force->setMemoryFrom(before);
+    remembers_ = true;
+}
+
+Eigen::Vector3d Sweep::channelForce(int channel, int node) const {
+    if (channel != dragChannel)
+        return own_[channel].size() ? own_[channel].at(node) : Eigen::Vector3d(Eigen::Vector3d::Zero());
+    return dragWeight_.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero())
+                               : nodeDrag(dragFactor_, dragWeight_[node], u.at(node));
 }
 
 Eigen::Vector3d Sweep::force(int node) const {
-    return elastic_.at(node) + dampingForce(node) + creaseForce(node) + dragForce(node);
+    Eigen::Vector3d sum = elastic_.at(node);
+    for (const int channel : {dampingChannel, creaseChannel, dragChannel}) sum += channelForce(channel, node);
+    for (int channel = otherChannels; channel < static_cast<int>(channels_.size()); ++channel)
+        sum += channelForce(channel, node);
+    return sum;
+}
+
+const ElementForce* Sweep::forceOf(int channel) const {
+    const auto place = std::find(channelOf_.begin(), channelOf_.end(), channel);
+    return place == channelOf_.end() || forces_.empty() ? nullptr : forces_[place - channelOf_.begin()].get();
+}
+
+double Sweep::energy(int channel, const Points& at) const {
+    double sum = 0.;
+    for (std::size_t f = 0; f < forces_.size(); ++f)
+        if (channelOf_[f] == channel) sum += forces_[f]->energy(at);
+    return sum;
 }
 
 void Sweep::clearForces(int node) {
     elastic_.set(node, Eigen::Vector3d::Zero());
-    if (damping_.size()) damping_.set(node, Eigen::Vector3d::Zero());
-    if (crease_.size()) crease_.set(node, Eigen::Vector3d::Zero());
+    for (Coordinates& own : own_)
+        if (own.size()) own.set(node, Eigen::Vector3d::Zero());
     if (!dragWeight_.empty()) dragWeight_[node] = 0.;
 }
 
 void Sweep::clearForces() {
-    for (Coordinates* c : {&elastic_, &damping_, &crease_}) setZero(*c);
+    setZero(elastic_);
+    for (Coordinates& own : own_) setZero(own);
     std::fill(dragWeight_.begin(), dragWeight_.end(), 0.);
 }
 
-std::vector<double> Sweep::lengths() const {
-    if (!hasLengths_) return {};
-    std::vector<double> all(sideCount_);
-    for (std::size_t e = 0; e < sides_.order.size(); ++e)
-        if (sides_.order.element[e] >= 0) all[sides_.order.element[e]] = sides_.length[e];
-    for (std::size_t i = 0; i < sides_.cables.size(); ++i) all[sides_.cables[i]] = sides_.cableLength[i];
+std::vector<double> Sweep::memory() const {
+    std::vector<double> all;
+    if (remembers_)
+        for (const auto& force : forces_) force->appendMemory(all);
     return all;
 }
 
-void Sweep::setLengths(const std::vector<double>& lengths) {
-    sides_.length.resize(sides_.order.size(), 1.);
-    for (std::size_t e = 0; e < sides_.order.size(); ++e)
-        if (sides_.order.element[e] >= 0) sides_.length[e] = lengths[sides_.order.element[e]];
-    sides_.cableLength.resize(sides_.cables.size());
-    for (std::size_t i = 0; i < sides_.cables.size(); ++i) sides_.cableLength[i] = lengths[sides_.cables[i]];
-    hasLengths_ = true;
+std::size_t Sweep::memorySize() const {
+    std::size_t size = 0;
+    for (const auto& force : forces_) size += force->memorySize();
+    return size;
+}
+
+void Sweep::setMemory(const std::vector<double>& memory) {
+    const double* from = memory.data();
+    for (const auto& force : forces_) {
+        force->setMemory(from);
+        from += force->memorySize();
+    }
+    remembers_ = true;
 }
 
 } // namespace membrane

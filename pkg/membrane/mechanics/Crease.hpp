@@ -11,12 +11,12 @@ namespace membrane {
 constexpr double leverFloor = 0.05;
 
 /// A crease AB between the triangles ABC and BAD, at rest. Seen from the side where the corners of ABC run
-/// counter-clockwise, a valley (sign +1) closes towards the eye and a mountain (sign -1) away from it.
+/// counter-clockwise, a mountain (sign +1) closes away from the eye and a valley (sign -1) towards it.
 struct CreaseRest {
     double length = 0.;  ///< l_AB [m]
     double heightC = 0.; ///< l_CE [m], E the foot of C on AB
     double heightD = 0.; ///< l_DF [m], F the foot of D on AB
-    double sign = 1.;    ///< +1 valley, -1 mountain
+    double sign = 1.;    ///< +1 mountain, -1 valley
 
     /// 1/l_AB does not exceed this in (8) [1/m].
     double steepestLever() const { return 1. / (leverFloor * length); }
@@ -70,13 +70,13 @@ inline CreaseState creaseState(const Rest& rest, const Eigen::Vector3d& a, const
 
     // The branch cut of atan2 is moved from pi (flat) to -pi/2, away from both closed and flat.
     constexpr double pi = 3.14159265358979323846;
-    const double angle = atan2(rest.sign * length * areaC.dot(toD), areaC.dot(areaD));
+    const double angle = atan2(-rest.sign * length * areaC.dot(toD), areaC.dot(areaD));
     s.theta = whole ? (angle <= -0.5 * pi ? angle + 2. * pi : angle) : 0.;
 
     const double inverseC = s.heightC > collapsedFraction * rest.heightC ? 1. / doubleC : 0.;
     const double inverseD = s.heightD > collapsedFraction * rest.heightD ? 1. / doubleD : 0.;
-    s.openC = (-rest.sign * inverseC) * areaC;
-    s.openD = (rest.sign * inverseD) * areaD;
+    s.openC = (rest.sign * inverseC) * areaC;
+    s.openD = (-rest.sign * inverseD) * areaD;
     return s;
 }
 

@@ -87,19 +87,18 @@ double exactTimeStep(const LinearForces& forces) {
 }
 
 /// The longest step of what moves beside the nodes.
-double stepBeside(const TimeStepInput& input) {
-    return input.beside > 0. ? 2. / std::sqrt(input.beside) : infinity;
+double stepBeside(const LinearForces& forces) {
+    return forces.beside > 0. ? 2. / std::sqrt(forces.beside) : infinity;
 }
 
 } // namespace
 
-double criticalTimeStep(const TimeStepInput& input) {
-    return margin * std::min(exactTimeStep(linearForces(input)), stepBeside(input));
+double criticalTimeStep(const LinearForces& forces) {
+    return margin * std::min(exactTimeStep(forces), stepBeside(forces));
 }
 
-bool withinCriticalTimeStep(const TimeStepInput& input, double dt) {
-    if (!(dt <= margin * stepBeside(input))) return false;
-    const LinearForces forces = linearForces(input);
+bool withinCriticalTimeStep(const LinearForces& forces, double dt) {
+    if (!(dt <= margin * stepBeside(forces))) return false;
     return dt <= margin * timeStepBound(forces).step || dt <= margin * exactTimeStep(forces);
 }
 

@@ -4,7 +4,7 @@
 
 namespace membrane {
 
-/// Critical time step [s] of the leapfrog in the given state.
+/// Critical time step [s] of the leapfrog under the given forces.
 ///
 /// Velocities at the time of the positions are extrapolated, v(n) = (3 v(n-1/2) - v(n-3/2))/2. Then
 /// x(n+1) - 2x(n) + x(n-1) + dt² K x(n)/M + dt² C v(n)/M = 0 is stable while the largest eigenvalue of
@@ -12,9 +12,9 @@ namespace membrane {
 /// taken 1 % shorter than it says. The same input gives the same number to the last bit.
 ///
 /// \return infinity if nothing can move
-double criticalTimeStep(const TimeStepInput& input);
+double criticalTimeStep(const LinearForces& forces);
 
-/// dt <= criticalTimeStep(input), for far less work if dt is not close to it.
-bool withinCriticalTimeStep(const TimeStepInput& input, double dt);
+/// dt <= criticalTimeStep(forces), for far less work if dt is not close to it.
+bool withinCriticalTimeStep(const LinearForces& forces, double dt);
 
 } // namespace membrane

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +11,14 @@ namespace membrane {
 /// \param meanMass m [kg], mean of the two nodes' masses
 inline double dampingCoefficient(double ratio, double stiffness, double meanMass) {
     return 2. * ratio * std::sqrt(std::max(0., stiffness) * meanMass);
+}
+
+/// Damping tension [N] of a side of the film.
+/// \param coefficient c [N s/m];  \param span from one node to the other [m];  \param inverse 1/its length [1/m]
+/// \param relative velocity of the other node against the one [m/s]
+inline double sideDamping(double coefficient, const Eigen::Vector3d& span, const Eigen::Vector3d& relative,
+                          double inverse) {
+    return coefficient * span.dot(relative) * inverse;
 }
 
 /// Damping tension [N] of a taut cable: together with its elastic tension never below 0, for a cable cannot push.

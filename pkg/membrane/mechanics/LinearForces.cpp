@@ -5,13 +5,11 @@
 #include <cmath>
 
 namespace membrane {
-namespace {
 
-TautSide tautSide(const TimeStepInput& in, std::size_t i) {
-    const Side& s = in.rest.sides[i];
-    const Eigen::Vector3d span = in.positions[s.b] - in.positions[s.a];
+TautSide tautSide(const Side& s, double damping, const Points& x) {
+    const Eigen::Vector3d span = x[s.b] - x[s.a];
     const double length = span.norm();
-    const double axial = std::max(0., s.stiffness), damping = in.damping.empty() ? 0. : in.damping[i];
+    const double axial = std::max(0., s.stiffness);
     // Without a length its direction is anybody's guess.
     if (!(length > 0.)) return {s.a, s.b, Eigen::Vector3d::UnitX(), axial, axial, damping};
     const double tension = sideTension(length, s.stiffness, s.restLength, s.critical);
@@ -20,18 +18,17 @@ TautSide tautSide(const TimeStepInput& in, std::size_t i) {
 
 /// The forces' turning with the triangles weighs where |force| / height is not small. It couples an apex, its foot and
 /// the other triangle; the factor bounds them together.
-StiffCrease stiffCrease(const TimeStepInput& in, const Crease& c) {
+StiffCrease stiffCrease(const Crease& c, const CreaseLaw& law, const Points& x) {
     constexpr double turning = 3.;
-    const CreaseState s =
-        creaseState(c.rest, in.positions[c.a], in.positions[c.b], in.positions[c.c], in.positions[c.d]);
-    const CreaseForces f = creaseForces(c.rest, in.crease, s);
+    const CreaseState s = creaseState(c, x);
+    const CreaseForces f = creaseForces(c.rest, law, s);
     const double heightC = std::max(s.heightC, leverFloor * c.rest.heightC);
     const double heightD = std::max(s.heightD, leverFloor * c.rest.heightD);
     // (7) is no gradient where the heights differ: the larger of its two moments bounds both.
     const double paper =
-        in.crease.bending * c.rest.length *
+        law.bending * c.rest.length *
         std::max(heightC / (c.rest.heightC * c.rest.heightC), heightD / (c.rest.heightD * c.rest.heightD));
-    const double moment = in.crease.conservative ? creaseStiffness(c.rest, in.crease) : paper;
+    const double moment = law.conservative ? creaseStiffness(c.rest, law) : paper;
     return {c.a,
             c.b,
             c.c,
@@ -40,10 +37,12 @@ StiffCrease stiffCrease(const TimeStepInput& in, const Crease& c) {
             s.footD,
             s.openC / heightC,
             s.openD / heightD,
-            moment * std::max(1., in.crease.penalty),
+            moment * std::max(1., law.penalty),
             turning * f.c.norm() / heightC,
             turning * f.d.norm() / heightD};
 }
+
+namespace {
 
 Eigen::Vector4d padded(const Eigen::Vector3d& v) {
     return {v[0], v[1], v[2], 0.};
@@ -56,22 +55,25 @@ double dot(const Eigen::Vector4d& a, const Eigen::Vector4d& b) {
 
 } // namespace
 
-LinearForces linearForces(const TimeStepInput& in) {
-    LinearForces forces;
-    forces.sides.reserve(in.rest.sides.size());
-    for (std::size_t i = 0; i < in.rest.sides.size(); ++i) forces.sides.push_back(tautSide(in, i));
-    if (in.crease.bending > 0.) {
-        forces.creases.reserve(in.rest.creases.size());
-        for (const Crease& c : in.rest.creases) forces.creases.push_back(stiffCrease(in, c));
-    }
-    forces.drag = in.drag;
-    if (in.ground) forces.ground = *in.ground;
-    forces.inverseRoot.reserve(in.masses.size());
-    for (const double mass : in.masses) forces.inverseRoot.push_back(mass > 0. ? 1. / std::sqrt(mass) : 0.);
-    const auto positive = [](double c) { return c > 0.; };
-    forces.damped = std::any_of(in.damping.begin(), in.damping.end(), positive) ||
-                    std::any_of(in.drag.begin(), in.drag.end(), positive);
-    return forces;
+LinearForces::LinearForces(const std::vector<double>& masses) {
+    inverseRoot.reserve(masses.size());
+    for (const double mass : masses) inverseRoot.push_back(mass > 0. ? 1. / std::sqrt(mass) : 0.);
+}
+
+void LinearForces::addSide(const TautSide& side) {
+    sides.push_back(side);
+    damped = damped || side.damping > 0.;
+}
+
+void LinearForces::addDrag(int node, double slope) {
+    drag.resize(inverseRoot.size());
+    drag[node] += slope;
+    damped = damped || slope > 0.;
+}
+
+void LinearForces::addGround(int node, double stiffness) {
+    ground.resize(inverseRoot.size());
+    ground[node] += stiffness;
 }
 
 void addProduct(const LinearForces& forces, double k, double c, const NodeVectors& x, NodeVectors& y) {

@@ -5,18 +5,6 @@
 
 namespace membrane {
 
-/// What the forces on a membrane depend on besides its sides.
-struct TimeStepInput {
-    const RestState& rest;
-    const std::vector<double>& masses;           ///< actual masses [kg]; a node that cannot move has 0
-    const Points& positions;                     ///< current positions [m]
-    const std::vector<double>& damping;          ///< c of each side [N s/m], or empty
-    const std::vector<double>& drag;             ///< of each node, the same in all directions [N s/m], or empty
-    CreaseLaw crease;                            ///< bending = 0: no creases
-    const std::vector<double>* ground = nullptr; ///< springs of each node to places at rest [N/m]; null or empty: none
-    double beside = 0.; ///< square of the fastest frequency of what else moves with the nodes [1/s²]; 0: nothing
-};
-
 /// A side as if taut.
 struct TautSide {
     int a, b;
@@ -36,19 +24,30 @@ struct StiffCrease {
 
 /// Symmetric positive matrices that bound how the forces answer to small displacements (K) and velocities (C).
 ///
-/// Every side counts as taut (a buckled one may become so in the next step), with the stiffness of its direction under
-/// its present tension, and every crease with its penalty and the turning of its forces; negative stiffness is left
-/// out.
+/// What a force adds to them is up to it: see ElementForce. Every side counts as taut (a buckled one may become so in
+/// the next step), with the stiffness of its direction under its present tension, and every crease with its penalty and
+/// the turning of its forces; negative stiffness is left out.
 struct LinearForces {
-    std::vector<TautSide> sides; ///< in the order of the rest state
+    std::vector<TautSide> sides;
     std::vector<StiffCrease> creases;
-    std::vector<double> drag;        ///< as in the input
-    std::vector<double> ground;      ///< as in the input
+    std::vector<double> drag;        ///< of each node, the same in all directions [N s/m]; or empty
+    std::vector<double> ground;      ///< springs of each node to places at rest [N/m]; or empty
     std::vector<double> inverseRoot; ///< of each node, 1/sqrt(mass); 0: cannot move
-    bool damped;                     ///< C is not 0
+    bool damped = false;             ///< C is not 0
+    double beside = 0.; ///< square of the fastest frequency of what else moves with the nodes [1/s²]; 0: nothing
+
+    /// No forces yet. \param masses of the nodes [kg]; one that cannot move has 0
+    explicit LinearForces(const std::vector<double>& masses);
+    void addSide(const TautSide& side);
+    /// \param slope [N s/m]
+    void addDrag(int node, double slope);
+    /// \param stiffness [N/m]
+    void addGround(int node, double stiffness);
 };
 
-LinearForces linearForces(const TimeStepInput& input);
+/// A side at the present places of its nodes [m]. \param damping c [N s/m]
+TautSide tautSide(const Side& side, double damping, const Points& x);
+StiffCrease stiffCrease(const Crease& crease, const CreaseLaw& law, const Points& x);
 
 /// A vector for each node. The fourth number stays 0: four fill the CPU's vectors and three do not.
 using NodeVectors = std::vector<Eigen::Vector4d>;

@@ -235,7 +235,7 @@ void addCrease(const MeshInput& in, std::size_t at, const Film& film, RestState&
     crease.rest.length = (b - a).norm();
     crease.rest.heightC = 2. * triangleArea(a, b, in.nodes[crease.c]) / crease.rest.length;
     crease.rest.heightD = 2. * triangleArea(a, b, in.nodes[crease.d]) / crease.rest.length;
-    crease.rest.sign = -sign;
+    crease.rest.sign = sign;
     rest.creases.push_back(crease);
     rest.sides[side].kind = SideKind::crease;
 }

@@ -41,6 +41,11 @@ struct Crease {
     CreaseRest rest;
 };
 
+/// Where a crease is among the nodes' places [m].
+inline CreaseState creaseState(const Crease& c, const Points& x) {
+    return creaseState(c.rest, x[c.a], x[c.b], x[c.c], x[c.d]);
+}
+
 /// Everything the forces need to know of the unloaded membrane. Sides of the film come first, sorted by (a, b), then
 /// cables as they were given.
 struct RestState {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Measures for the roofline, on one thread: steps of the kernels on a square sheet, and the machine's limits.
 // Answers in one line of JSON. The steps alone are seen by callgrind, if it starts without instrumentation.
+#include "pkg/membrane/kernels/CreaseKernel.hpp"
+#include "pkg/membrane/kernels/DragKernel.hpp"
+#include "pkg/membrane/kernels/SideKernel.hpp"
 #include "pkg/membrane/kernels/Sweep.hpp"
 #include "pkg/membrane/mechanics/Damping.hpp"
 #include "tests/shapes.hpp"
@@ -30,7 +33,9 @@ constexpr double perturbation = 1e-4; ///< of the nodes' places [m]
 struct Model {
     RestState rest;
     std::vector<Eigen::Vector3i> triangles;
-    Laws laws;
+    std::shared_ptr<SideForces> sides;
+    std::shared_ptr<CreaseForce> creases; ///< null: none
+    std::shared_ptr<DragForce> drag;      ///< null: none
     Sweep sweep;
     SweepStep step;
 
@@ -45,16 +50,20 @@ struct Model {
         rest = restState(in);
         triangles = in.triangles;
         double stiffest = 0., lightest = rest.masses[0];
+        std::vector<double> damping;
         for (const Side& s : rest.sides) {
-            laws.damping.push_back(dampingCoefficient(0.02, s.stiffness, 0.5 * (rest.masses[s.a] + rest.masses[s.b])));
+            damping.push_back(dampingCoefficient(0.02, s.stiffness, 0.5 * (rest.masses[s.a] + rest.masses[s.b])));
             stiffest = std::max(stiffest, s.stiffness);
         }
         for (const double mass : rest.masses) lightest = std::min(lightest, mass);
+        ElementForces forces{sides = std::make_shared<SideForces>(rest, damping)};
         if (everything) {
-            laws.crease.bending = 30. * in.young * std::pow(in.thickness, 3) / 12.;
-            laws.airDensity = 1.2e-3;
+            CreaseLaw law;
+            law.bending = 30. * in.young * std::pow(in.thickness, 3) / 12.;
+            forces.push_back(creases = std::make_shared<CreaseForce>(rest, law));
+            forces.push_back(drag = std::make_shared<DragForce>(triangles, 1.2e-3));
         }
-        sweep.prepare(rest, triangles, laws, rest.masses, std::vector<char>(rest.masses.size(), true), 1);
+        sweep.prepare(forces, rest.masses, std::vector<char>(rest.masses.size(), true), 1);
         shapes::Random random(7);
         for (std::size_t i = 0; i < in.nodes.size(); ++i) {
             sweep.x.set(i, in.nodes[i] + random.vector(perturbation));
@@ -73,17 +82,21 @@ struct Model {
 };
 
 /// Bytes that tell which nodes each block's elements have; a run needs only the first.
-template <std::size_t K> double indexBytes(const Arrangement<K>& order) {
+template <class Force> double indexBytes(const std::shared_ptr<Force>& force) {
     double bytes = 0.;
+    if (!force) return bytes;
+    const auto& order = force->order();
+    const std::size_t K = order.node.size();
     for (const Block& block : order.blocks)
         bytes += sizeof(Block) + K * sizeof(int) * (block.run ? 1 : static_cast<std::size_t>(block.count()));
     return bytes;
 }
 
 /// Elements that are computed, padding included.
-template <std::size_t K> int computed(const Arrangement<K>& order) {
+template <class Force> int computed(const std::shared_ptr<Force>& force) {
     int count = 0;
-    for (const Block& block : order.blocks) count += block.paddedCount();
+    if (force)
+        for (const Block& block : force->order().blocks) count += block.paddedCount();
     return count;
 }
 
@@ -101,21 +114,17 @@ int sheet(int side, bool everything, int warm, int steps) {
         return 1;
     }
 
-    // The tables as Sweep makes them.
     const std::size_t nodes = model.rest.masses.size();
-    const Partition whole = partition(static_cast<int>(nodes), 1, Sweep::defaultChunk);
-    const SideTable sides = sideTable(model.rest, model.laws.damping, whole);
-    const CreaseTable creases = creaseTable(everything ? model.rest : RestState(), whole);
-    const DragTable drag = dragTable(everything ? model.triangles : std::vector<Eigen::Vector3i>(), whole);
+    const std::size_t creases = model.creases ? model.creases->order().size() : 0;
     // Read once: indices, constants, masses. Read and written once: x, v, u, forces; weights of drag.
-    const double read = indexBytes(sides.order) + indexBytes(creases.order) + indexBytes(drag.order) +
-                        sizeof(double) * (4. * sides.stiffness.size() + 7. * creases.length.size() + nodes);
+    const double read = indexBytes(model.sides) + indexBytes(model.creases) + indexBytes(model.drag) +
+                        sizeof(double) * (4. * model.sides->constantCount() + 7. * creases + nodes);
     const double both = sizeof(double) * (12. + everything) * nodes;
     std::printf("{\"nodes\": %zu, \"sides\": %zu, \"creases\": %zu, \"triangles\": %zu, \"computed\": {\"nodes\": %zu, "
                 "\"sides\": %d, \"creases\": %d, \"triangles\": %d}, \"held\": %.0f, \"moved\": %.0f, \"steps\": %d, "
                 "\"seconds\": %.9g}\n",
                 nodes, model.rest.sides.size(), model.rest.creases.size(), everything ? model.triangles.size() : 0,
-                nodes, computed(sides.order), computed(creases.order), computed(drag.order), read + both,
+                nodes, computed(model.sides), computed(model.creases), computed(model.drag), read + both,
                 read + 2. * both, steps, seconds / steps);
     return 0;
 }

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "MembraneForce.hpp"
+#include "MembraneForceEngine.hpp"
+#include <core/Scene.hpp>
+
+namespace yade {
+
+YADE_PLUGIN((MembraneForce));
+
+/// Nothing: the engine of the membrane's forces has it among its own.
+void MembraneForce::action() {
+    StepGuard::refuseCall(*this);
+    if (!membrane) throw std::runtime_error(getClassName() + ": membrane is not set");
+    for (const auto& engine : scene->engines) {
+        const auto* forces = dynamic_cast<const MembraneForceEngine*>(engine.get());
+        if (forces && !forces->dead && forces->membrane == membrane) return;
+    }
+    throw std::runtime_error(getClassName() +
+                             ": no MembraneForceEngine of its membrane is in O.engines, or it is dead");
+}
+
+std::shared_ptr<::membrane::ElementForce> MembraneForce::make() const {
+    throw std::runtime_error(getClassName() + " is no force: take a class that is derived from it");
+}
+
+} // namespace yade
