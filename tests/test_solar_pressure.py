@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pressure of sunlight: closed forms of flat plates, its work, and its place beside the engine of the forces."""
+"""Pressure of sunlight: closed forms of flat plates, its work, its place beside other engines."""
 
 import math
 import unittest
@@ -15,7 +15,7 @@ SHARES = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.7, 0.1))  # specular, diffuse
 
 
 def of_a_plate(area, normal, sun, specular, diffuse):
-    """Force (3,) [N] on a flat plate, photon by photon: what comes, and what leaves in which way."""
+    """Force (3,) [N] on a flat plate, photon by photon: what comes, and what leaves how."""
     sun = np.asarray(sun) / np.linalg.norm(sun)
     normal = np.asarray(normal) * math.copysign(1.0, np.dot(normal, sun))  # away from the sun
     caught = P * area * np.dot(normal, sun)
