@@ -166,11 +166,14 @@ offer() {
 # configure FOLDER [options of CMake]: sets up a build folder, unless it is set up already. Begins afresh, without an
 # old object, if the folder was moved here from elsewhere or is for another system or YADE.
 configure() {
-    local folder=$1 made_for
-    made_for="$*, $(system PRETTY_NAME), YADE $(of_release yade)"
-    if [[ -e $folder/Makefile && $(cat "$folder/.made-for" 2>/dev/null) == "$made_for" ]]; then return; fi
+    local folder=$1 place kept fresh=--fresh
+    place="$folder, $(system PRETTY_NAME), YADE $(of_release yade)"
+    kept=$(cat "$folder/.made-for" 2>/dev/null || true)
+    if [[ -e $folder/Makefile && $kept == "$place"$'\n'"${*:2}" ]]; then return; fi
+    [[ ${kept%%$'\n'*} != "$place" ]] || fresh=
     rm -f "$folder/.made-for"
-    cmake --fresh -S "$root" -B "$folder" -G "Unix Makefiles" "${@:2}" && printf '%s\n' "$made_for" >"$folder/.made-for"
+    cmake $fresh -S "$root" -B "$folder" -G "Unix Makefiles" "${@:2}" &&
+        printf '%s\n' "$place" "${*:2}" >"$folder/.made-for"
 }
 
 configure_and_make() {
