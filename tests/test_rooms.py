@@ -29,10 +29,7 @@ def modules(folder):
 
 
 def imports(name, files):
-    """Names of modules that the module `name` imports, wherever it does so.
-
-    Names that `files` lacks are of modules that are not there, or given as strings.
-    """
+    """Names of modules of its package that the module `name` imports, wherever it does so."""
     package = name.split(".")[: None if files[name].stem == "__init__" else -1]
     top = package[0]
     for node in ast.walk(ast.parse(files[name].read_text(encoding="utf-8"))):
