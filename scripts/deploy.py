@@ -2,7 +2,5 @@
 """The paper's scene: the small-scale sail is folded, spun up, released and deploys."""
 
 from membrane.cli import run
-from yade import utils
 
 run("deploy")
-utils.waitIfBatch()

@@ -29,10 +29,7 @@ def modules(folder):
 
 
 def imports(name, files):
-    """Names of modules that the module `name` imports, wherever it does so.
-
-    Names that `files` lacks are of modules that are not there, or given as strings.
-    """
+    """Names of modules of its package that the module `name` imports, wherever it does so."""
     package = name.split(".")[: None if files[name].stem == "__init__" else -1]
     top = package[0]
     for node in ast.walk(ast.parse(files[name].read_text(encoding="utf-8"))):
@@ -90,9 +87,9 @@ def package(name, **sources):
     return folder
 
 
-def plain_python(text):
-    """The CompletedProcess of a text that Python runs without YADE."""
-    command = ["/usr/bin/python3", "-c", text]
+def plain_python(*words):
+    """The CompletedProcess of Python without YADE: of a script, or of "-c" and a text."""
+    command = ["/usr/bin/python3", *words]
     return subprocess.run(command, env=yade_environment(), capture_output=True, text=True)
 
 
@@ -161,7 +158,7 @@ class TestWithoutYade(unittest.TestCase):
         self.assertGreater(len(names), 40)
         text = "import importlib, sys\nfor name in {}:\n    importlib.import_module(name)\n"
         text += "print(sorted(n for n in sys.modules if n.split('.')[0] == 'yade'))"
-        done = plain_python(text.format(names))
+        done = plain_python("-c", text.format(names))
         self.assertEqual((done.returncode, done.stdout), (0, "[]\n"), done.stderr)
 
     def test_who_asks_for_a_class_is_told_to_use_yade(self):
@@ -172,13 +169,19 @@ class TestWithoutYade(unittest.TestCase):
             "from membrane import scene",
             "import membrane.run.sail",
         ):
-            done = plain_python(line)
+            done = plain_python("-c", line)
             self.assertEqual(done.returncode, 1, line)
             last = done.stderr.strip().splitlines()[-1]
             self.assertRegex(last, "^ImportError: membrane: no YADE is running.*yade script.py")
 
+    def test_commands_that_need_it_say_so_in_one_sentence(self):
+        for command in ("deploy", "case", "chart", "verify", "ikaros"):
+            done = plain_python(SCRIPTS / f"{command}.py")
+            self.assertEqual(done.returncode, 1)
+            self.assertRegex(done.stderr, f"^{command}: .*no YADE is running; .*\n$")
+
     def test_what_nobody_knows_is_no_attribute(self):
-        done = plain_python("import membrane; print(hasattr(membrane, 'nothing'))")
+        done = plain_python("-c", "import membrane; print(hasattr(membrane, 'nothing'))")
         self.assertEqual(done.stdout, "False\n", done.stderr)
         self.assertFalse(hasattr(membrane, "nothing"))
 

@@ -5,11 +5,10 @@
 (`Membrane`, `MembraneMat`, `MembraneForceEngine`, …), which also appear in ``yade.wrapper``.
 Without YADE the package can be imported, too: only who asks for a class is refused.
 
-Its rooms, each of which imports only from those before it (tests/test_rooms.py):
-the ground, modules beside this one, where errors and progress are known to all;
-`mesh` the sail's and others', folds, patterns, files of meshes; no YADE;
-`scene` bodies, engines, motion; `results` what runs leave; `view` pictures, page, film, window;
-`run` sails that run; `study` many runs; `cli` the commands of scripts/.
+Its rooms, each of which imports only from those before it, as tests/test_rooms.py sees to:
+the ground, which is beside this file, with what all need, as files, parameters and progress;
+`mesh` without YADE; `scene`; `results`, what runs leave; `view`, pictures of them;
+`run`, sails that run; `study`, many runs; `cli`, the commands of scripts/.
 """
 
 import sys

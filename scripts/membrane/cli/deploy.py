@@ -8,6 +8,8 @@ import argparse
 import contextlib
 from pathlib import Path
 
+from yade import utils
+
 from ..results.unfinished import new_results
 from ..run import sail
 from ..view import report, window
@@ -70,3 +72,4 @@ def main():
         print("Close the window to end.")
         with contextlib.suppress(KeyboardInterrupt):  # Ctrl-C ends it, too
             look.wait()
+    utils.waitIfBatch()

@@ -43,6 +43,8 @@ def plain_errors(command, stopped="stopped by Ctrl-C"):
         sys.exit(f"{command}: there is not enough memory" + (f": {error}" if str(error) else ""))
     except ModuleNotFoundError as error:
         package = (error.name or "").partition(".")[0]
+        if package == "yade":
+            sys.exit(f"{command}: no YADE is running; scripts/run.sh {command} starts it")
         by_hand = f"apt-get install python3-{DEBIAN.get(package, package)}"
         sys.exit(f"{command}: {error}; scripts/run.sh {command} installs it, or by hand: {by_hand}")
     except BrokenPipeError:
