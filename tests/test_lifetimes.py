@@ -157,7 +157,7 @@ class TestSavedAttributes(SceneTest):
             ("MembraneLedger", {"started": True, "doneWorks": [0.0]}, "doneWorks has 1 entries"),
             ("MembraneLedger", {"contactWorks": [1.0]}, "contactPairs, contactWorks and"),
             ("MembraneWatch", {"lowest": [0.0]}, "lowest has 1 entries"),
-            ("MembraneWatch", {"lowest": [0.0] * 10}, "lowest has 10 entries"),
+            ("MembraneWatch", {"lowest": [0.0] * 11}, "lowest has 11 entries"),
             ("MembraneWatch", {"newerBodies": [0.0] * 13}, "newerBodies has 13 entries"),
             ("MembraneWatch", {"olderBodies": [0.0] * 15}, "olderBodies has 15 entries"),
             ("MembraneWatch", {"newerHub": [0.0]}, "newerHub has 1 entries"),

@@ -65,7 +65,7 @@ void MembraneWatch::postLoad(MembraneWatch&) {
     };
     constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
     if (!lowest.empty() && lowest.size() < usualParts) checkLength("lowest", lowest.size(), usualParts, 1);
-    checkLength("lowest", lowest.size(), 1, usualParts + ::membrane::maxChannels);
+    checkLength("lowest", lowest.size(), 1, usualParts + ::membrane::maxChannels - ::membrane::otherChannels);
     checkLength("newerBodies", newerBodies.size(), numbersOfBody, any);
     checkLength("olderBodies", olderBodies.size(), numbersOfBody, any);
     checkLength("newerHub", newerHub.size(), 2, 1);

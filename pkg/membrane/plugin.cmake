@@ -125,7 +125,7 @@ foreach(file IN LISTS python_sources)
                        COMMAND ${CMAKE_COMMAND} -E copy ${source} ${python_dir}/${file} VERBATIM)
     list(APPEND python_copies ${python_dir}/${file})
 endforeach()
-configure_file(${releases} ${python_dir}/membrane COPYONLY)
+configure_file(${releases} ${python_dir}/membrane/releases.txt COPYONLY)
 add_custom_target(membrane_python ALL DEPENDS ${python_copies})
 
 # A file deleted or renamed in scripts/membrane must not live on as a copy, nor the module of another Python.
