@@ -60,6 +60,8 @@ def attributes(cls):
     usual = {bool: "bool", int: "int", float: "Real", str: "string", list: "vector<int>"}
     for name, value in cls().dict().items():
         kinds.setdefault(name, usual.get(type(value), type(value).__name__))
+    if issubclass(cls, yade.Material):
+        del kinds["id"]  # by which YADE looks it up, without a check, when it loads a scene
     return kinds
 
 
@@ -77,6 +79,8 @@ def _entries(kind):
         return NUMBERS
     if kind == "int":
         return WHOLES
+    if kind == "string":
+        return TEXTS
     size = int(kind[6])  # as in Vector3r
     return [(one,) * size for one in (NUMBERS if kind.endswith("r") else WHOLES)]
 
