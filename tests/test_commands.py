@@ -2,15 +2,19 @@
 """How commands end on bad days: one sentence, an exit status other than 0, no traceback, and
 earlier results whole."""
 
+import io
 import os
 import shutil
 import signal
 import subprocess
 import unittest
+from contextlib import redirect_stderr
 from functools import lru_cache
 from pathlib import Path
+from unittest.mock import patch
 
 from membrane import scene
+from membrane.cli import errors
 from membrane.results.unfinished import UNFINISHED
 from membrane.run.sail import LAST_GOOD
 from processes import Halt
@@ -277,6 +281,32 @@ class TestEarlierResults(BadDayTest):
 
     def test_read_only_disk_leaves_them_whole(self):
         self.check_on_disk("8m", "ro", "^deploy: .*Read-only file system")
+
+
+class TestErrors(unittest.TestCase):
+    def ends(self, error, debug=None):
+        """What is printed, and the last sentence, where a command raises an error."""
+        given = {} if debug is None else {errors.DEBUG: debug}
+        said = io.StringIO()
+        with patch.dict(os.environ, given), redirect_stderr(said):
+            with self.assertRaises(SystemExit) as caught, errors.plain_errors("fold"):
+                raise error
+        return said.getvalue(), caught.exception.code
+
+    def test_what_is_foreseen_is_one_sentence(self):
+        for debug in (None, "", "0"):
+            said, end = self.ends(ValueError("beta = -1 must be >= 0"), debug)
+            self.assertEqual((said, end), ("", "fold: beta = -1 must be >= 0"))
+
+    def test_its_traceback_is_shown_to_those_who_ask(self):
+        said, end = self.ends(ValueError("beta = -1 must be >= 0"), "1")
+        self.assertEqual(end, "fold: beta = -1 must be >= 0")
+        self.assertRegex(said, r"Traceback (?s:.*)in ends\n *raise error\nValueError: beta")
+
+    def test_a_fault_of_the_program_is_a_traceback_and_a_word(self):
+        said, end = self.ends(KeyError("sides"))
+        self.assertRegex(said, r"Traceback (?s:.*)KeyError: 'sides'")
+        self.assertRegex(end, "^fold: this is a fault of the program.* please report it")
 
 
 class TestReadOnlyBuild(BadDayTest):

@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """How the commands of scripts/ end where something is wrong: one sentence and an exit status."""
 
+import os
 import signal
 import sys
+import traceback
 from contextlib import contextmanager, suppress
 
 from ..progress import Terminated
 
 STOPPED, TERMINATED = 130, 143  # exit statuses after Ctrl-C and SIGTERM, as shells have them
+DEBUG = "MEMBRANE_DEBUG"  # variable of the environment: show where errors come from
 DEBIAN = {"vtkmodules": "vtk9"}  # packages whose names in Python and in Debian differ
 
 
@@ -16,7 +19,8 @@ def plain_errors(command, stopped="stopped by Ctrl-C"):
     """End the program with one sentence where what is inside raises an error that is foreseen.
 
     What a command imports beside the standard library belongs inside, too: a package may be
-    missing.
+    missing. With MEMBRANE_DEBUG=1 it shows the traceback, too. Other errors are faults of the
+    program: a traceback, and what to do with it.
 
     Parameters
     ----------
@@ -50,7 +54,15 @@ def plain_errors(command, stopped="stopped by Ctrl-C"):
     except BrokenPipeError:
         sys.exit(f"{command}: nobody reads what it prints any more")
     except (ImportError, ValueError, RuntimeError, OSError) as error:
+        if os.environ.get(DEBUG, "0") not in ("", "0"):
+            traceback.print_exc()
         sys.exit(f"{command}: {str(error) or type(error).__name__}")
+    except Exception:
+        traceback.print_exc()
+        sys.exit(
+            f"{command}: this is a fault of the program, not of what it was given; please report "
+            "it with the lines above, the command and its files"
+        )
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
