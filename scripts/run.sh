@@ -67,7 +67,7 @@ END
 run_packages=(yade python3-numpy python3-matplotlib python3-vtk9)
 build_packages=(g++ cmake make libboost-dev libeigen3-dev python3-dev libglut-dev libgtest-dev)
 sail_packages=(python3-gmsh)
-test_packages=(xvfb xauth python3-meshio) # a display for the tests of drawing; another reader and writer of files
+test_packages=(xvfb xauth python3-meshio valgrind) # a display; another reader and writer of files; counts instructions
 verify_packages=(python3-scipy)
 bench_packages=(lammps openmpi-bin valgrind)
 animation_packages=(xvfb libgl1-mesa-dri ffmpeg)

@@ -1,15 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What `scripts/run.sh bench --only roofline` is made of: counts, levels, roofs, its program.
 
-Nothing here measures a speed. The long tests need valgrind, which `bench` installs.
+Nothing here measures a speed. Some tests need valgrind.
 """
 
+import re
 import shutil
+import subprocess
 import unittest
+from pathlib import Path
 from unittest import mock
 
 from membrane.study.benchmarks import roofline, sheet
 from support import long, scratch
+from yade import config
 
 
 # Two instructions of a program that call a library between them; costs end at the last that is
@@ -133,6 +137,31 @@ class TestRoof(unittest.TestCase):
         path = scratch() / "roofline.png"
         roofline.plot(roofline.limit_entries([limits()], KNOWN), points, KNOWN, path)
         self.assertEqual(path.read_bytes()[:4], b"\x89PNG")
+
+
+@unittest.skipUnless(shutil.which("valgrind"), "needs valgrind")
+@unittest.skipUnless("avx2" in Path("/proc/cpuinfo").read_text(), "recorded with AVX2")
+@unittest.skipUnless(config.version.strip() == "2023.02a", "recorded with Debian 12's compiler")
+class TestInstructions(unittest.TestCase):
+    """A guard of speed without a clock. A kernel that was made better gets another figure here."""
+
+    # Of 10 steps of 34 x 34 nodes: springs and damping; creases and drag, too.
+    RECORDED = {False: 1_024_597, True: 2_007_513}
+
+    def test_kernels_take_at_most_a_twentieth_more_than_recorded(self):
+        roofline.build()
+        counting = ["valgrind", "--tool=callgrind", "--instr-atstart=no"]
+        for everything, recorded in self.RECORDED.items():
+            done = subprocess.run(
+                [*counting, *map(str, roofline.sheet(34, everything, 2, 10))],
+                check=True,
+                capture_output=True,
+                text=True,
+                cwd=scratch(),
+            )
+            found = int(re.search(r"refs: +([\d,]+)", done.stderr)[1].replace(",", ""))
+            self.assertLess(found, 1.05 * recorded)
+            self.assertGreater(found, 0.5 * recorded)  # it did run
 
 
 @long
