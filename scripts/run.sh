@@ -31,8 +31,9 @@ usage: scripts/run.sh COMMAND [options]
 
 In the folder of the sources also:
 
-  test [-j N] [--full] [MODULE ...]
-                            run the tests, or those of some modules; --full adds the long ones
+  test [-j N] [--full | --quick] [MODULE ...]
+                            run the tests, or those of some modules; --full adds the long ones,
+                            --quick keeps to those that need no scene, less than a minute
   check                     a short test: build, load, check the layout, deploy on both paths, save
                             and load, package
   bench [options]           measure the speed beside YADE's own functors and LAMMPS: tables, and

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs all tests by YADE's own runner: `yade -n -x tests/run_tests.py [--full] [MODULE ...]`.
+"""Runs all tests in YADE: `yade -n -x tests/run_tests.py [--full | --quick] [MODULE ...]`.
 
---full adds the long ones. MODULE, as `test_creases`, keeps to the tests named.
+--full adds the long ones; --quick takes the modules that say QUICK = True: less than a minute, and
+no scene is built. MODULE, as `test_creases`, keeps to the tests named.
 """
 
 import argparse
@@ -17,7 +18,9 @@ sys.path.insert(0, str(Path(sys.argv[0]).resolve().parent))
 def main():
     """Run the tests; returns the exit status."""
     parser = argparse.ArgumentParser(prog="run_tests", description="Run the tests in YADE.")
-    parser.add_argument("--full", action="store_true", help="also run the long tests")
+    how_many = parser.add_mutually_exclusive_group()
+    how_many.add_argument("--full", action="store_true", help="also run the long tests")
+    how_many.add_argument("--quick", action="store_true", help="only those that need no scene")
     parser.add_argument("modules", nargs="*", metavar="MODULE", help="as test_creases; default all")
     arguments = parser.parse_args()
     # Commands behind a shell's "&" begin with SIGINT ignored, and hand that on to those they start.
@@ -34,6 +37,8 @@ def main():
     if arguments.full:
         os.environ[support.FULL] = "1"
     all_tests.chosen = arguments.modules
+    if arguments.quick and not arguments.modules:
+        all_tests.chosen = all_tests.quick()
     result = yade.tests.testModule("all_tests")
     return 0 if result.wasSuccessful() and result.testsRun else 1
 

@@ -14,6 +14,8 @@ from membrane.study import benchmarks
 from membrane.study.benchmarks import cases, lammps, quiet, results, sheet, turns, workers
 from support import scratch
 
+QUICK = True
+
 
 def sample(**changes):
     """An Entry, with `changes`."""

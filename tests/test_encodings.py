@@ -11,6 +11,8 @@ from membrane.parameters import Refused
 from membrane.view import report
 from support import ROOT, CommandTest, scratch, yade_environment
 
+QUICK = True
+
 READ_OR_WRITTEN = {"read_text", "write_text", "open", "fdopen", "TemporaryFile"}
 TABLES = {"savetxt", "genfromtxt", "loadtxt"}
 STARTED = {"run", "Popen", "check_output"}

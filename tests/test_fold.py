@@ -10,6 +10,8 @@ from membrane import geometry, measures
 from membrane.mesh import sail_mesh
 from membrane.mesh.fold import fold, fold_report
 
+QUICK = True
+
 STRIP, BAR, ARM, GAP, SPOOL = 0.022, 0.030, 0.040, 1e-4, 0.025
 TO_ARM = hypot(BAR - ARM / sqrt(2), ARM / sqrt(2))
 REFINES = (1, 2, 3)

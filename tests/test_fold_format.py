@@ -12,6 +12,8 @@ from membrane.mesh.fold_format import read_fold, write_fold
 from membrane.mesh.miura import miura
 from support import fold_angle, scratch
 
+QUICK = True
+
 PATCH = {
     "file_spec": 1.2,
     "file_creator": "by hand",

@@ -9,6 +9,8 @@ from membrane import geometry, measures
 from membrane.mesh import LINE_KINDS, sail_mesh, sheet_mesh
 from membrane.mesh.fold import fold
 
+QUICK = True
+
 OUTER, INNER, STRIP = 0.455, 0.103, 0.022
 REFINES = (1, 2, 3)
 OTHERS = (

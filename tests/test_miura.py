@@ -9,6 +9,8 @@ from membrane.mesh.miura import miura, vertices
 from membrane.mesh.patterns import crease_pattern, fold_by_angles, nearest_pose
 from support import ROOT
 
+QUICK = True
+
 SHAPE = {"columns": 4, "rows": 5, "along": 0.05, "across": 0.06, "angle": 65.0}
 
 

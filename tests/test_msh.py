@@ -10,6 +10,8 @@ from membrane.files import BadFile
 from membrane.mesh.msh import read_msh
 from support import gmsh_sheet, scratch
 
+QUICK = True
+
 # Two triangles and a fold line between them, as gmsh writes it.
 SMALL = """$MeshFormat
 2.2 0 8

@@ -15,6 +15,8 @@ from membrane.results.unfinished import RESULTS, UNFINISHED, new_results
 from membrane.run.case import run_case
 from support import scratch
 
+QUICK = True
+
 
 def found(folder):
     """What is in a folder: text of files, targets of links, "" for folders, by path."""

@@ -20,6 +20,8 @@ from membrane.results.history import read_history
 from membrane.run import sail
 from support import O, ROOT, long, quiet, scratch, yade_environment
 
+QUICK = True
+
 # Tables 1 and 2 of the paper, and the defaults chosen among Table 2's.
 PAPER = {
     "outer_width": 0.455,

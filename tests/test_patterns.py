@@ -16,6 +16,8 @@ from membrane.mesh.pattern_mesh import mean_value_coordinates, mesh_pattern
 from membrane.mesh.patterns import crease_pattern, find_faces, fold_by_angles, nearest_pose
 from support import rotation
 
+QUICK = True
+
 
 def frame(coords, edges, letters, **more):
     """A FoldFrame in metres from plain lists."""

@@ -15,6 +15,8 @@ from mpl_toolkits.mplot3d import proj3d
 from membrane.study.verification.chart_picture import draw, words_box
 from support import ROOT, scratch
 
+QUICK = True
+
 
 UNITS = {"mm": 1e-3, "m": 1.0}
 

@@ -15,6 +15,8 @@ from membrane.study.benchmarks import roofline, sheet
 from support import long, scratch
 from yade import config
 
+QUICK = True
+
 
 # Two instructions of a program that call a library between them; costs end at the last that is
 # not 0, and the line after "calls=" holds all of the called function.

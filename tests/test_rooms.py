@@ -12,6 +12,8 @@ import membrane
 from membrane import _former
 from support import ROOT, scratch, yade_environment
 
+QUICK = True
+
 SCRIPTS = ROOT / "scripts"
 ROOMS = ("", "mesh", "scene", "results", "view", "run", "study", "cli")  # the first: the ground
 PLAIN_COMMANDS = "errors|options|calibrate|sweep|workflow"

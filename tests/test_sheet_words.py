@@ -14,6 +14,8 @@ from membrane.results.output import read_history
 from membrane.run import pattern_sail
 from support import O, SceneTest, gmsh_sheet, scratch
 
+QUICK = True
+
 # A sheet of two squares and the crease between them.
 PAIR = {
     "frame_unit": "m",

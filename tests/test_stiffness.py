@@ -8,6 +8,8 @@ from membrane import Membrane, scene
 from membrane.mesh import sail_mesh
 from support import grid, plane_stress_stiffness, rotation, unit_film
 
+QUICK = True
+
 FLAT = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, 0.1, 0.0]])
 EQUILATERAL = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, np.sqrt(0.75), 0.0]])
 RIGHT = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
