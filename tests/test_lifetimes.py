@@ -223,6 +223,17 @@ class TestMembraneOfAnEngine(SceneTest):
                     with self.assertRaises(RuntimeError):
                         scene.advance(3)
 
+    def test_none_in_a_step_that_was_stopped(self):
+        """The ledger is then up to date, and the watch has no forces to look at."""
+        for path in scene.PATHS:
+            O.reset()
+            made = spinning(path)
+            made.watch.tolerance = 1e-300
+            with self.assertRaisesRegex(RuntimeError, "from nowhere"):
+                scene.advance(300)
+            made.forces.membrane = None
+            made.watch()
+
 
 class TestHub(SceneTest):
     def test_other_nodes_take_other_places(self):

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <core/Omega.hpp>
-#include <limits>
 #include <sstream>
 
 namespace yade {
@@ -58,25 +57,24 @@ void MembraneWatch::postLoad(MembraneWatch&) {
     if (!(tolerance > 0.))
         throw std::invalid_argument("MembraneWatch: tolerance = " + std::to_string(tolerance) + " must be > 0");
     if (period <= 0) throw std::invalid_argument("MembraneWatch: period = " + std::to_string(period) + " must be > 0");
-    const auto checkLength = [](const char* name, std::size_t length, std::size_t unit, std::size_t most) {
-        if (length % unit != 0 || length / unit > most)
-            throw std::invalid_argument(string("MembraneWatch: ") + name + " has " + std::to_string(length) +
+    const auto refuseUnless = [](bool kept, const char* name, const vector<Real>& list) {
+        if (!kept && !list.empty())
+            throw std::invalid_argument(string("MembraneWatch: ") + name + " has " + std::to_string(list.size()) +
                                         " entries, which no watch has kept");
     };
-    constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
-    if (!lowest.empty() && lowest.size() < usualParts) checkLength("lowest", lowest.size(), usualParts, 1);
-    checkLength("lowest", lowest.size(), 1, usualParts + ::membrane::maxChannels - ::membrane::otherChannels);
-    checkLength("newerBodies", newerBodies.size(), numbersOfBody, any);
-    checkLength("olderBodies", olderBodies.size(), numbersOfBody, any);
-    checkLength("newerHub", newerHub.size(), 2, 1);
-    checkLength("olderHub", olderHub.size(), 2, 1);
+    constexpr std::size_t mostParts = usualParts + ::membrane::maxChannels - ::membrane::otherChannels;
+    refuseUnless(lowest.size() >= usualParts && lowest.size() <= mostParts, "lowest", lowest);
+    refuseUnless(newerBodies.size() % numbersOfBody == 0, "newerBodies", newerBodies);
+    refuseUnless(olderBodies.size() % numbersOfBody == 0, "olderBodies", olderBodies);
+    refuseUnless(newerHub.size() == 2, "newerHub", newerHub);
+    refuseUnless(olderHub.size() == 2, "olderHub", olderHub);
     floor_ = 0.;
 }
 
 void MembraneWatch::action() {
     StepGuard::refuseCall(*this);
     if (!ledger || !ledger->forces) throw std::runtime_error("MembraneWatch: ledger is not set, or has no forces");
-    if (ledger->dead || !ledger->isUpToDate(*scene)) return;
+    if (ledger->dead || !ledger->isUpToDate(*scene) || !ledger->forces->hasRun(*scene)) return;
     if (floor_ == 0.)
         for (const ::membrane::Side& s : ledger->forces->membrane->rest().sides)
             floor_ += 0.5 * std::abs(s.stiffness) * std::pow(noStrain * s.restLength, 2);
