@@ -11,9 +11,7 @@ YADE_PLUGIN((CentrifugalField));
 void CentrifugalField::action() {
     StepGuard::refuseCall(*this);
     if (!membrane) throw std::runtime_error("CentrifugalField: membrane is not set");
-    for (const auto& engine : scene->engines) {
-        auto* forces = dynamic_cast<MembraneForceEngine*>(engine.get());
-        if (!forces || forces->dead || forces->membrane != membrane) continue;
+    if (MembraneForceEngine* const forces = MembraneForceEngine::of(membrane.get(), *scene)) {
         if (forces->takesField(*scene)) return;
         forces->writeBack(); // the nodes may be ahead of their bodies
     }

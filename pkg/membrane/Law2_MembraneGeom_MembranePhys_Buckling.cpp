@@ -5,6 +5,7 @@
 #include "MembraneFault.hpp"
 #include "MembraneForceEngine.hpp"
 #include "mechanics/SideForce.hpp"
+#include <algorithm>
 #include <cmath>
 #include <core/EnergyTracker.hpp>
 #include <core/Interaction.hpp>
@@ -34,14 +35,10 @@ void findEnergy(EnergyTracker& energies, const string& name, int& index) {
 bool movesUnwatched(const Interaction& link, const Scene& scene) {
     const shared_ptr<Body> body = bodyAt(scene, link.getId1());
     const MembraneNode* const node = body ? exactly<MembraneNode>(body->shape) : nullptr;
-    bool moves = false;
-    for (const auto& engine : scene.engines) {
-        if (engine->dead) continue;
-        const auto* const forces = dynamic_cast<const MembraneForceEngine*>(engine.get());
-        if (forces && node && forces->membrane == node->membrane) return false;
-        moves = moves || dynamic_cast<const NewtonIntegrator*>(engine.get());
-    }
-    return moves;
+    if (node && MembraneForceEngine::of(node->membrane.get(), scene)) return false;
+    return std::any_of(scene.engines.begin(), scene.engines.end(), [](const shared_ptr<Engine>& engine) {
+        return !engine->dead && dynamic_cast<const NewtonIntegrator*>(engine.get());
+    });
 }
 
 } // namespace

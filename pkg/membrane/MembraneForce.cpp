@@ -11,12 +11,9 @@ YADE_PLUGIN((MembraneForce));
 void MembraneForce::action() {
     StepGuard::refuseCall(*this);
     if (!membrane) throw std::runtime_error(getClassName() + ": membrane is not set");
-    for (const auto& engine : scene->engines) {
-        const auto* forces = dynamic_cast<const MembraneForceEngine*>(engine.get());
-        if (forces && !forces->dead && forces->membrane == membrane) return;
-    }
-    throw std::runtime_error(getClassName() +
-                             ": no MembraneForceEngine of its membrane is in O.engines, or it is dead");
+    if (!MembraneForceEngine::of(membrane.get(), *scene))
+        throw std::runtime_error(getClassName() +
+                                 ": no MembraneForceEngine of its membrane is in O.engines, or it is dead");
 }
 
 std::shared_ptr<::membrane::ElementForce> MembraneForce::make() const {

@@ -69,6 +69,14 @@ Vector3r centredVelocity(const State& state, const Vector3r& seenPosition, const
     return state.vel;
 }
 
+MembraneForceEngine* MembraneForceEngine::of(const Membrane* membrane, const Scene& in) {
+    for (const auto& engine : in.engines) {
+        auto* const forces = dynamic_cast<MembraneForceEngine*>(engine.get());
+        if (forces && !forces->dead && forces->membrane.get() == membrane) return forces;
+    }
+    return nullptr;
+}
+
 void MembraneForceEngine::postLoad(MembraneForceEngine&) {
     const StepGuard::Look look;
     requireNotNegative("beta", beta);

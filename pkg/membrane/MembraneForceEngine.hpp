@@ -21,6 +21,8 @@ public:
     void postLoad(MembraneForceEngine&);
     void preSave(MembraneForceEngine&);
 
+    /// The engine in O.engines that lives and computes the forces on a membrane; null: none.
+    static MembraneForceEngine* of(const Membrane* membrane, const Scene& in);
     /// Whether it has computed the forces in the present step of a scene.
     bool hasRun(const Scene& in) const { return lastStep_ == in.iter && preparedFor_.is(&in); }
     int nodeCount() const { return static_cast<int>(states_.size()); }
