@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The further scenes as a user runs them: IKAROS on its free hub, the spinning disk."""
 
-import importlib
 import json
 import re
 import unittest
 from dataclasses import replace
 
+from membrane.cli import ikaros
 from membrane.results.output import read_history
 from membrane.run import sail
 from support import O, ROOT, CommandTest, long, quiet, run_yade, scratch
@@ -53,9 +53,6 @@ class TestIkaros(CommandTest):
     def test_a_run_that_goes_wrong_leaves_its_last_good_state(self):
         """The watch is told to stop at what is rounding."""
         O.reset()
-        found = importlib.util.spec_from_file_location("ikaros", self.SCRIPT)
-        ikaros = importlib.util.module_from_spec(found)
-        found.loader.exec_module(ikaros)
         folder = scratch() / "ikaros_wrong"
         folder.mkdir()
         strict = {"energy_tolerance": 1e-9, "spin_up_tolerance": 1e-2, "duration": 6.0}

@@ -19,25 +19,22 @@ that spin, and must end at 2.5 rpm; with `--spin 2.5` it ends at 1.1 rpm.
 import argparse
 from dataclasses import fields, replace
 from math import cos, pi, radians, sin
-from pathlib import Path
 
 import numpy as np
-from membrane.cli.errors import plain_errors
-from membrane.cli.options import add_argument, folder
-from membrane.files import write_json
-from membrane.measures import energy_errors
-from membrane.parameters import SailParameters
-from membrane.results.unfinished import new_results
+from matplotlib.figure import Figure
+from yade.wrapper import Omega
 
-with plain_errors("ikaros"):
-    from matplotlib.figure import Figure
-    import membrane
-    from membrane.run import sail
-    from membrane.run.record import Recorder
-    from membrane.scene import hub
-    from membrane.view import plots
-    from membrane.view.report import PAGE
-    from yade.wrapper import Omega
+from .. import SolarPressure
+from ..files import write_json
+from ..measures import energy_errors
+from ..parameters import SailParameters
+from ..results.unfinished import new_results
+from ..run import sail
+from ..run.record import Recorder
+from ..scene import hub
+from ..view import plots
+from ..view.report import PAGE
+from .options import add_argument, add_out
 
 RPM = 2 * pi / 60
 THICKNESS = 7.5e-6  # m, of the polyimide film
@@ -79,9 +76,7 @@ def command_line():
     parser = argparse.ArgumentParser(
         prog="ikaros", description="Stage 2 of the deployment of IKAROS, on a free hub."
     )
-    parser.add_argument(
-        "--out", type=folder, default=Path("out/ikaros"), metavar="DIR", help="default: out/ikaros"
-    )
+    add_out(parser, "out/ikaros")
     parser.add_argument(
         "--spin",
         type=float,
@@ -103,7 +98,7 @@ def command_line():
 def shine(net, angle):
     """Add sunlight to the scene's engines, `angle` [deg] from the spin axis, from above."""
     direction = (sin(radians(angle)), 0, -cos(radians(angle)))
-    light = membrane.SolarPressure(membrane=net, direction=direction, **SUNLIGHT)
+    light = SolarPressure(membrane=net, direction=direction, **SUNLIGHT)
     Omega().engines = [light, *Omega().engines]
 
 
@@ -222,8 +217,3 @@ def main():
     for name in ("ikaros.png", PAGE, "history.csv", "summary.json", "shapes/film.pvd"):
         if (arguments.out / name).exists():
             print(f"  {arguments.out / name}")
-
-
-if __name__ == "__main__":
-    with plain_errors("ikaros"):
-        main()
