@@ -59,8 +59,8 @@ void MembraneLedger::action() {
     // Power at the velocities before this step, and at their mean.
     const ::membrane::MotionSums& moved = sweep.motionSums();
     const int channels = static_cast<int>(sweep.channels().size());
-    vector<std::size_t> entry;
-    for (int channel = 0; channel < channels; ++channel) entry.push_back(entryOf(sweep, channel));
+    std::size_t entry[::membrane::maxChannels];
+    for (int channel = 0; channel < channels; ++channel) entry[channel] = entryOf(sweep, channel);
     const auto [arrivingOutside, leavingOutside] = forces->powerFromOutside();
     vector<Real> arriving(furtherEntries + furtherNames.size(), 0.), mean = arriving;
     for (int channel = 0; channel < channels; ++channel) {

@@ -68,7 +68,6 @@ public:
             for (int k = 0; k < 3; ++k) to.addGround(t[k], slope / 3. * around);
         }
     }
-    Culprit culprit(const Moment&, bool) const override { return {}; }
 
 private:
     boost::shared_ptr<const yade::SolarPressure> sun_;

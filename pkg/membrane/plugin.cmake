@@ -26,8 +26,6 @@ target_link_libraries(membrane_plugin PUBLIC membrane_mechanics)
 if(MEMBRANE_SANITIZE)
     # Two large files take a third of the time of many.
     set_target_properties(membrane_plugin PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
-    set_source_files_properties(${PROJECT_SOURCE_DIR}/pkg/membrane/StepGuard.cpp PROPERTIES
-                                SKIP_UNITY_BUILD_INCLUSION ON) # whose names others have, too
     target_compile_options(membrane_plugin PRIVATE -O0)
 endif()
 target_include_directories(membrane_plugin SYSTEM PRIVATE ${Boost_INCLUDE_DIRS} ${Python3_INCLUDE_DIRS}

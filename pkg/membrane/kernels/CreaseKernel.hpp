@@ -14,7 +14,8 @@ public:
     Exchange exchange() const override { return Exchange::stores; }
     void arrange(const Partition& partition) override;
     GroupEnergy add(int group, const GroupJob& job) override;
-    double energy(const Points& x) const override;
+    /// Energy [J] of all creases at some places of the nodes [m].
+    double energy(const Points& x) const;
     void addTo(LinearForces& to, const Points& x, const Points& v) const override;
     Culprit culprit(const Moment& moment, bool elastic) const override;
 

@@ -176,8 +176,8 @@ void Sweep::sweepPart(int part, const SweepStep& now) {
     motion.v = Components(v);
     motion.u = Components(u);
     motion.elastic = to.elastic.values;
-    for (const Window& own : to.own) motion.own[motion.channels++] = own.values;
     motion.channels = static_cast<int>(channels_.size());
+    for (int k = 0; k < motion.channels; ++k) motion.own[k] = to.own[k].values;
     motion.dragWeight = to.dragWeight.values;
     motion.mass = mass_.data();
     motion.dt = now.dt;
@@ -269,13 +269,6 @@ Eigen::Vector3d Sweep::force(int node) const {
 const ElementForce* Sweep::forceOf(int channel) const {
     const auto place = std::find(channelOf_.begin(), channelOf_.end(), channel);
     return place == channelOf_.end() || forces_.empty() ? nullptr : forces_[place - channelOf_.begin()].get();
-}
-
-double Sweep::energy(int channel, const Points& at) const {
-    double sum = 0.;
-    for (std::size_t f = 0; f < forces_.size(); ++f)
-        if (channelOf_[f] == channel) sum += forces_[f]->energy(at);
-    return sum;
 }
 
 void Sweep::clearForces(int node) {

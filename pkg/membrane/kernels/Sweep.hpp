@@ -53,8 +53,6 @@ public:
     const ElementForces& forces() const { return forces_; }
     /// A force of a channel; null: none.
     const ElementForce* forceOf(int channel) const;
-    /// Energy [J] that a channel stores at some places of the nodes [m].
-    double energy(int channel, const Points& x) const;
     /// Forces [N] from outside on owned nodes, for the next step only.
     std::vector<std::pair<int, Eigen::Vector3d>> outside;
 
