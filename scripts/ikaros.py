@@ -3,4 +3,4 @@
 
 from membrane.cli import run
 
-run("ikaros")
+run("ikaros", module="deploy", sail="ikaros")

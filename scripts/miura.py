@@ -3,4 +3,4 @@
 
 from membrane.cli import run
 
-run("miura")
+run("miura", module="deploy", sail="miura")

@@ -3,4 +3,4 @@
 
 from membrane.cli import run
 
-run("sail")
+run("sail", module="deploy", sail="sheet")

@@ -17,7 +17,7 @@ with patch.object(config, "version", "of tomorrow" if own else config.version):
     import membrane
     from membrane import _load
     from membrane.parameters import SailParameters
-    from membrane.run import sail
+    from membrane.run import driver
 
 facts = {
     "package": membrane.__file__,
@@ -38,5 +38,5 @@ for path in ("law2", "fused"):
     parameters = SailParameters(
         path=path, fold_lines=3, inner_width=0.15, duration=0.02, spin_up_tolerance=1e-2
     )
-    sail.deploy(parameters, folder / path, pictures=False, page=False)
+    driver.deploy(parameters, folder / path, pictures=False, page=False)
 (folder / "facts.json").write_text(json.dumps(facts), encoding="utf-8")

@@ -16,9 +16,9 @@ from membrane import scene  # noqa: E402
 from membrane.mesh import sail_mesh  # noqa: E402
 from membrane.mesh.fold import fold  # noqa: E402
 from membrane.parameters import SailParameters  # noqa: E402
-from membrane.run import sail  # noqa: E402
+from membrane.run import driver  # noqa: E402
 from membrane.view import window  # noqa: E402
-from support import O, grid, node_states, quiet  # noqa: E402
+from support import O, grid, node_states, quiet, set_engines  # noqa: E402
 
 RANGE = 1e-3  # strain at the end of the scale
 CORNER = np.array([0.1, 0.05, 0.0])  # of the sheet [m], off the middle of the picture
@@ -137,8 +137,8 @@ def fly(net, rest, forces, look):
 def draw_flight(stage, path):
     """A sheet that flies; its bodies lag behind on the fused path."""
     net, rest = sheet(at=CORNER - (0.4, 0, 0))
-    made = scene.set_engines(
-        net, path=path, exchange_period=10**9, force_time_step=True, energy_tolerance=None
+    made = set_engines(
+        net, path=path, exchange_period=10**9, force_time_step=True, energy_tolerance=0
     )
     O.dt = STEP
     seen = {"start": rest[0, 0], "speed": SPEED}
@@ -198,7 +198,7 @@ def draw_deployment(stage):
         frames.append(watch.window.drawer.frames)
 
     with quiet():
-        sail.deploy(parameters, folder / "deployed", pictures=False, look=look)
+        driver.deploy(parameters, folder / "deployed", pictures=False, look=look)
     watch.window.snapshot(folder / "watched.png")
     facts["frames"] = frames
     stage.window = watch.window

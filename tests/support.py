@@ -16,9 +16,10 @@ import membrane
 import numpy as np
 from membrane import scene
 from membrane.mesh import sail_mesh
-from membrane.parameters import PatternParameters, SailParameters
+from membrane.parameters import SailParameters
 from membrane.results.output import read_history
-from membrane.run import pattern_sail, sail
+from membrane.run import driver
+from membrane.run.sails.sheet import PatternParameters
 from membrane.scene import spool
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
@@ -223,6 +224,16 @@ def node_states(net):
     return np.array([[s.pos for s in states], [s.vel for s in states]])
 
 
+def set_engines(net, *, driven=(), touching=(), gravity=0.0, **values):
+    """`scene.set_engines` with SceneParameters of these values; gravity may be a vector [m/s2]."""
+    down = gravity if np.isscalar(gravity) else -gravity[2]
+    p = scene.SceneParameters(gravity=down, **values)
+    made = scene.set_engines(net, p, driven=driven, touching=touching)
+    if not np.isscalar(gravity):
+        made.newton.gravity = made.ledger.gravity = gravity
+    return made
+
+
 @lru_cache(maxsize=None)
 def scratch():
     """A folder that goes away with the process."""
@@ -246,13 +257,12 @@ def release_sail(threads=None, **changes):
     """
     O.reset()
     parameters = SailParameters(spin_up_tolerance=1e-3, **changes)
-    mesh, spinning = sail.build(parameters)
+    made, spinning = driver.build(parameters)
     if threads:
         spinning.forces.ompThreads = threads
     with quiet():
-        sail.spin_up(spinning, parameters)
-    O.dt = parameters.dt
-    scene.release(spinning, parameters.omega, mesh.guide_nodes.ravel())
+        driver.spin_up(spinning, parameters)
+    driver.release(made, spinning, parameters.omega, parameters.dt)
 
 
 @lru_cache(maxsize=None)
@@ -281,7 +291,7 @@ class MainRun:
         self.parameters = SailParameters()
         self.folder = scratch() / "main_run"
         with quiet():
-            self.summary = sail.deploy(self.parameters, self.folder, pictures=False, page=False)
+            self.summary = driver.deploy(self.parameters, self.folder, pictures=False, page=False)
         self.history = read_history(self.folder / "history.csv")
         self.phases = np.column_stack([self.history[f"phase_difference_{i}"] for i in range(4)])
         O.reset()
@@ -294,7 +304,7 @@ def short_run():
     folder = scratch() / "short_run"
     p = SailParameters(duration=0.1, shapes_interval=5e-3, spin_up_tolerance=1e-2)
     with quiet():
-        sail.deploy(p, folder, pictures=False, page=False)
+        driver.deploy(p, folder, pictures=False, page=False)
     O.reset()
     return folder
 
@@ -304,12 +314,11 @@ def pattern_run():
     """Output folder of a Miura-ori sheet that flies free for 20 ms, with 5 shapes."""
     O.reset()
     folder = scratch() / "pattern_run"
-    p = PatternParameters(
-        size=0.0375, omega=60.0, duration=0.02, shapes_interval=5e-3, crease_law="conservative"
-    )
-    sheet = pattern_sail.read_sheet(ROOT / "scripts" / "patterns" / "miura.fold", p)
+    file = ROOT / "scripts" / "patterns" / "miura.fold"
+    about = {"duration": 0.02, "shapes_interval": 5e-3, "crease_law": "conservative"}
+    p = PatternParameters(file=str(file), size=0.0375, omega=60.0, **about)
     with quiet():
-        pattern_sail.fly(sheet, p, folder, pictures=False, page=False)
+        driver.deploy(p, folder, pictures=False, page=False)
     O.reset()
     return folder
 
@@ -328,7 +337,7 @@ def free_hub_run():
         spin_up_tolerance=1e-2,
     )
     with quiet():
-        sail.deploy(p, folder, pictures=False, page=False)
+        driver.deploy(p, folder, pictures=False, page=False)
     O.reset()
     return folder
 
@@ -374,7 +383,7 @@ def wind_a_tether(path="law2"):
     cables = [(i, i + 1) for i in range(len(nodes) - 1)]
     tether = scene.add_membrane(0.99 * nodes, [], cables=cables, positions=nodes)
     ids = tether.bodyIds
-    made = scene.set_engines(
+    made = set_engines(
         tether,
         path=path,
         driven=[*spool.add_spool(), ids[0]],

@@ -7,7 +7,7 @@ import unittest
 
 import numpy as np
 from membrane import scene
-from support import O, SceneTest, force_engine, grid, node_states, scratch
+from support import O, SceneTest, force_engine, grid, node_states, scratch, set_engines
 from yade import wrapper as yade
 
 
@@ -20,7 +20,7 @@ def spinning(path, period=7):
     net = scene.add_membrane(
         nodes, triangles, creases, [-1] * 6, interactions=path == "law2", alpha=1.0
     )
-    made = scene.set_engines(
+    made = set_engines(
         net, path=path, exchange_period=period, beta=10, theta0=2.0, zeta=0.02, air_density=1e-2
     )
     made.hold([0, 24])

@@ -6,7 +6,7 @@ import unittest
 import membrane
 import numpy as np
 from membrane import scene
-from support import O, SceneTest, grid, interaction_loop, node_states
+from support import O, SceneTest, grid, interaction_loop, node_states, set_engines
 from yade import utils
 from yade import wrapper as yade
 
@@ -20,7 +20,7 @@ def spinning(path, **options):
     nodes -= nodes.mean(axis=0)
     net = scene.add_membrane(nodes, triangles, interactions=path == "law2")
     options = {"zeta": 0.02, "air_density": 1e-3, **options}
-    made = scene.set_engines(net, path=path, **options)
+    made = set_engines(net, path=path, **options)
     O.dt = 0.3 * made.forces.criticalTimeStep()
     scene.set_spin(made, 20.0)
     scene.advance(20)
@@ -280,7 +280,7 @@ class TestEngines(ChangeTest):
             self.refused("two engines in O.engines, .* count its energies")
 
     def test_other_engines_of_ours_twice(self):
-        for made in self.each_path(driven=[], hub_inertia=None):
+        for made in self.each_path(driven=[], hub_inertia=0):
             engines = list(O.engines)
             made.field.dead = made.spool.dead = False
             for engine in (made.watch, made.field, made.spool, made.newton):

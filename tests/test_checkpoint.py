@@ -15,7 +15,7 @@ import numpy as np
 import yade.config
 from membrane.parameters import SailParameters
 from membrane.results.output import HistoryWriter, VtkSeries, is_whole_series, is_whole_table
-from membrane.run import checkpoint, sail
+from membrane.run import checkpoint, driver
 from membrane.run.checkpoint import SCENE, STATE, Checkpoints, save_scene
 from support import O, SceneTest, quiet, scratch
 from yade import utils
@@ -231,7 +231,7 @@ class TestPowerCut(CheckpointTest):
             stack.enter_context(quiet())
             for name, function in watched.items():
                 stack.enter_context(mock.patch(name, function))
-            sail.deploy(p, self.folder, pictures=False, checkpoints=saved, page=False)
+            driver.deploy(p, self.folder, pictures=False, checkpoints=saved, page=False)
         self.assertGreater(max(shapes for _, shapes in names), 4)  # of both series
         self.assertEqual(min(shapes for _, shapes in names), 0)
 

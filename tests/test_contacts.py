@@ -9,7 +9,7 @@ import membrane
 import numpy as np
 from membrane import scene
 from membrane.scene import contacts as ordinary, spool
-from support import O, SceneTest, grid, interaction_loop, node_states
+from support import O, SceneTest, grid, interaction_loop, node_states, set_engines
 from yade import utils
 from yade import wrapper as yade
 
@@ -68,7 +68,7 @@ class TestGrains(SceneTest):
         """
         net = sheet(path)
         grain = ball(0.004, 0.003, 0.0085, (0.1, 0.0, -1.0), radius=0.003, material=steel())
-        made = scene.set_engines(net, path=path, touching=net.bodyIds, energy_tolerance=None)
+        made = set_engines(net, path=path, touching=net.bodyIds, energy_tolerance=0)
         O.dt = 0.1 * made.forces.criticalTimeStep()
         bodies = [O.bodies[i] for i in net.bodyIds] + [grain]
 
@@ -140,7 +140,7 @@ class TestGrains(SceneTest):
             first, second = (
                 ball(0.0, y, 0.1, (0, -y / 0.02, 0), material=steel()) for y in (-0.0102, 0.0102)
             )
-            made = scene.set_engines(net, path=path, touching=net.bodyIds)
+            made = set_engines(net, path=path, touching=net.bodyIds)
             O.dt = 0.3 * made.forces.criticalTimeStep()
             scene.advance(int(0.005 / O.dt))
             self.assertLess(first.state.vel[1], 0.0, path)
@@ -150,7 +150,7 @@ class TestGrains(SceneTest):
         for path in scene.PATHS:
             net = sheet(path)
             grain = ball(0.0, 0.0, 0.0149, material=net.material)
-            made = scene.set_engines(net, path=path, touching=net.bodyIds)
+            made = set_engines(net, path=path, touching=net.bodyIds)
             O.dt = 0.01 * made.forces.criticalTimeStep()
             scene.advance(1)
             (pair,) = contacts()
@@ -180,8 +180,8 @@ class TestFloors(SceneTest):
                 with self.subTest(path=path, kind=kind):
                     net = sheet(path, radius=0.003)
                     self.floor(kind)
-                    made = scene.set_engines(
-                        net, path=path, touching=net.bodyIds, gravity=(0, 0, -9.81), zeta=0.05
+                    made = set_engines(
+                        net, path=path, touching=net.bodyIds, gravity=9.81, zeta=0.05
                     )
                     O.dt = 0.3 * made.forces.criticalTimeStep()
                     heights = []
@@ -199,7 +199,7 @@ class TestFloors(SceneTest):
             net = sheet("fused", height=-0.0171, radius=0.003)
             self.floor("facet")
             O.bodies[-1].mask = mask
-            made = scene.set_engines(net, path="fused", touching=net.bodyIds)
+            made = set_engines(net, path="fused", touching=net.bodyIds)
             O.dt = 0.01 * made.forces.criticalTimeStep()
             scene.advance(1)
             self.assertEqual(len(contacts()), len(net.nodes), mask)
@@ -209,7 +209,7 @@ class TestFloors(SceneTest):
         pair = [ball(0, y, 0.1, material=steel()) for y in (-0.0099, 0.0099)]
         for grain in pair:
             grain.mask = -1
-        made = scene.set_engines(net, path="fused", touching=net.bodyIds)
+        made = set_engines(net, path="fused", touching=net.bodyIds)
         O.dt = 0.01 * made.forces.criticalTimeStep()
         scene.advance(1)
         self.assertEqual(contacts(), [(pair[0].id, pair[1].id)])
@@ -220,10 +220,10 @@ class TestFloors(SceneTest):
             for name, value in changes.items():
                 setattr(body, name, value)
             with self.assertRaisesRegex(ValueError, f"touching: body #{body.id} {message}"):
-                scene.set_engines(net, touching=net.bodyIds)
+                set_engines(net, touching=net.bodyIds)
             body.bounded = False
             body.mask = 1
-            scene.set_engines(net, touching=net.bodyIds)
+            set_engines(net, touching=net.bodyIds)
 
         net = sheet("law2")
         refused("is a Tetra, which nodes cannot touch", shape=yade.Tetra())
@@ -238,11 +238,11 @@ class TestFloors(SceneTest):
         body = ball(0, 0, 0.1, material=steel())
         body.mask = spool.SPOOL_MASK
         with self.assertRaisesRegex(ValueError, "NewtonIntegrator would not move it"):
-            scene.set_engines(net, touching=net.bodyIds)
+            set_engines(net, touching=net.bodyIds)
 
     def test_a_body_that_comes_later_is_moved_or_told(self):
         net = sheet("fused")
-        made = scene.set_engines(net, path="fused", touching=net.bodyIds)
+        made = set_engines(net, path="fused", touching=net.bodyIds)
         O.dt = 0.1 * made.forces.criticalTimeStep()
         scene.advance(2)
         grain = ball(0, 0, 0.1, (0, 0, -1), material=steel())
@@ -256,16 +256,16 @@ class TestFloors(SceneTest):
         net = sheet("law2")
         grain = ball(0, 0, 0.1, material=steel())
         with self.assertRaisesRegex(ValueError, f"body #{grain.id} is no node of the membrane"):
-            scene.set_engines(net, touching=[0, grain.id])
+            set_engines(net, touching=[0, grain.id])
 
     def test_a_body_that_nothing_touches_is_told(self):
         net = sheet("law2")
         grain = ball(0, 0, 0.1, material=steel())
         said = io.StringIO()
         with contextlib.redirect_stderr(said):
-            scene.set_engines(net, touching=[0])
+            set_engines(net, touching=[0])
             self.assertEqual(said.getvalue(), "")
-            scene.set_engines(net)
+            set_engines(net)
         self.assertIn(f"nothing of the membrane touches body #{grain.id}", said.getvalue())
 
     def test_nodes_that_would_touch_like_grains_are_refused(self):
@@ -308,9 +308,7 @@ class TestStability(SceneTest):
         """A ball that falls on a clamped sheet, with contacts of so many Pa."""
         net = sheet(path)
         grain = ball(0.001, 0.0, 0.0151, (0, 0, -2.0), material=steel(young))
-        made = scene.set_engines(
-            net, path=path, touching=net.bodyIds, gravity=(0, 0, -9.81), zeta=0.02, **options
-        )
+        made = set_engines(net, path=path, touching=net.bodyIds, gravity=9.81, zeta=0.02, **options)
         made.hold(rim(net))
         made.newton.dead = made.resetter.dead = False
         O.dt = 0.3 * made.forces.criticalTimeStep()
@@ -361,9 +359,7 @@ class TestStability(SceneTest):
     def test_friction_only_takes(self):
         net = sheet("fused", height=-0.0172, radius=0.003)
         O.bodies.append(utils.wall(-0.02, axis=2, material=steel(young=1e5, friction=0.5)))
-        made = scene.set_engines(
-            net, path="fused", touching=net.bodyIds, gravity=(0, 0, -9.81), zeta=0.05
-        )
+        made = set_engines(net, path="fused", touching=net.bodyIds, gravity=9.81, zeta=0.05)
         O.dt = 0.3 * made.forces.criticalTimeStep()
         for i in net.bodyIds:
             O.bodies[i].state.vel = (0.3, 0, 0)

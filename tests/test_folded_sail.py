@@ -8,7 +8,7 @@ import numpy as np
 from membrane import geometry
 from membrane.mesh.fold import fold_report
 from membrane.parameters import SailParameters
-from membrane.run import sail
+from membrane.run import driver
 from support import O, fold_angle
 
 
@@ -16,7 +16,8 @@ class TestFoldedSail(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         O.reset()
-        cls.mesh, cls.sail = sail.build(SailParameters())
+        sail, cls.sail = driver.build(SailParameters())
+        cls.mesh = sail.mesh
         cls.folded = cls.sail.positions()
         cls.angles = np.array(cls.sail.forces.creaseAngles())
 

@@ -8,7 +8,7 @@ import numpy as np
 from membrane import scene
 from membrane.scene import spool
 from membrane.study.verification.spinning import fit_frequency2
-from support import O, SceneTest, engines_by_class, node_states, release_sail, scratch
+from support import O, SceneTest, engines_by_class, node_states, release_sail, scratch, set_engines
 
 
 OMEGA, HUB, ARM, TIP = 10.0, 0.1, 0.3, 2e-3  # spin [rad/s], lengths [m], mass of a tip [kg]
@@ -30,7 +30,7 @@ def star(path="law2", inertia=1e-3, stiffness=200.0, step=0.05, **options):
         cableDensity=1e-5,
         pointMasses=[0.0] * ARMS + [TIP] * ARMS,
     )
-    made = scene.set_engines(
+    made = set_engines(
         tethers,
         path=path,
         driven=tethers.bodyIds[:ARMS],
@@ -143,7 +143,7 @@ def yoyo():
     ids = np.array(tethers.bodyIds)
     anchors = [0, count + 1]
     facets = spool.add_spool(facets=72, young=1e5, friction_angle=0)
-    made = scene.set_engines(
+    made = set_engines(
         tethers,
         path="fused",
         driven=[*facets, *ids[anchors].tolist()],

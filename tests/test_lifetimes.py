@@ -7,7 +7,7 @@ from functools import lru_cache
 import membrane
 import numpy as np
 from membrane import scene
-from support import O, SceneTest, grid, node_states, scratch
+from support import O, SceneTest, grid, node_states, scratch, set_engines
 from yade import wrapper as yade
 
 # What asks the scene for the nodes; each ends with a sentence where it holds others.
@@ -52,7 +52,7 @@ def spinning(path, cells=4, steps=250):
     net = scene.add_membrane(
         nodes, triangles, [(middle, middle + 1)], [1], interactions=path == "law2"
     )
-    made = scene.set_engines(
+    made = set_engines(
         net, path=path, beta=3, zeta=0.02, driven=net.bodyIds[:2], hub_inertia=1e-5, omega=20.0
     )
     made.hold([0, 1])

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from membrane.parameters import SailParameters
 from membrane.results.output import read_history
-from membrane.run import sail
+from membrane.run import driver
 from support import O, ROOT, long, main_run, quiet, run_yade, scratch
 
 
@@ -16,7 +16,7 @@ def deploy(name, **changes):
     O.reset()
     folder = scratch() / name
     with quiet():
-        summary = sail.deploy(replace(SailParameters(), **changes), folder, pictures=False)
+        summary = driver.deploy(replace(SailParameters(), **changes), folder, pictures=False)
     return summary, read_history(folder / "history.csv")
 
 

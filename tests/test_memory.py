@@ -8,9 +8,10 @@ from unittest import mock
 
 import numpy as np
 from membrane.files import BadFile
+from membrane.measures import SQUARE
 from membrane.parameters import SailParameters
 from membrane.results.history import read_history
-from membrane.run import sail
+from membrane.run import driver
 from membrane.run.record import Recorder
 from membrane.study.sweep import pictures
 from support import SceneTest, scratch
@@ -21,8 +22,8 @@ GRIDS = ((400, 1), (1, 400), (20, 20), (3, 2))  # values of alpha_c and of beta
 
 class TestRecorder(SceneTest):
     def test_shapes_and_rows_are_not_kept_but_can_be_read_back(self):
-        mesh, built = sail.begin(SailParameters())[:2]
-        recorder = Recorder(scratch() / "memory", mesh, built, 1.0)
+        sail, built = driver.build(SailParameters())
+        recorder = Recorder(scratch() / "memory", sail, built, SQUARE, 1.0)
         start, kept = built.positions(), []
         moving = mock.patch.object(
             built, "last_positions", lambda: start * (1 + 1e-3 * len(recorder.frame_times))

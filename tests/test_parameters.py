@@ -17,7 +17,7 @@ import numpy as np
 from membrane.cli.options import add_arguments, count, from_arguments, parse
 from membrane.parameters import SailParameters, describe
 from membrane.results.history import read_history
-from membrane.run import sail
+from membrane.run import driver
 from support import O, ROOT, long, quiet, scratch, yade_environment
 
 QUICK = True
@@ -148,7 +148,9 @@ class TestParameters(unittest.TestCase):
         long = {"history_interval": 1e308, "shapes_interval": 1e300, "spin_up_tolerance": 1e-2}
         O.reset()
         with quiet():
-            sail.deploy(SailParameters(duration=2e-3, **long, **coarse), folder, False, page=False)
+            driver.deploy(
+                SailParameters(duration=2e-3, **long, **coarse), folder, False, page=False
+            )
         np.testing.assert_allclose(read_history(folder / "history.csv")["time"], [0, 2e-3])
         self.assertEqual(len(list((folder / "shapes").glob("film_*.vtu"))), 2)
 
@@ -157,7 +159,9 @@ class TestParameters(unittest.TestCase):
         often = {"history_interval": 1e-3, "shapes_interval": 1e-4, "spin_up_tolerance": 1e-2}
         O.reset()
         with quiet():
-            sail.deploy(SailParameters(duration=3e-3, **often, **coarse), folder, False, page=False)
+            driver.deploy(
+                SailParameters(duration=3e-3, **often, **coarse), folder, False, page=False
+            )
         self.assertEqual(len(list((folder / "shapes").glob("film_*.vtu"))), 4)
 
     def test_unknown_name_in_a_table_is_refused(self):

@@ -3,16 +3,17 @@
 
 import json
 import unittest
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 from membrane import Membrane, geometry, scene
 from membrane.mesh.fold_format import FoldFile, FoldFrame, read_fold, write_fold
 from membrane.mesh.pattern_mesh import default_size
-from membrane.parameters import PatternParameters
 from membrane.results.output import read_history
-from membrane.run import pattern_sail
-from membrane.run.pattern_sail import outline_corners
+from membrane.mesh.placing import outline_corners, place
+from membrane.run import driver
+from membrane.run.sails.sheet import REMESH, PatternParameters, read_sheet, sail_of
 from support import O, ROOT, CommandTest, SceneTest, gmsh_sheet, quiet, run_yade, scratch
 
 SCRIPT = ROOT / "scripts" / "sail.py"
@@ -24,19 +25,19 @@ SHORT = {"size": 0.0375, "omega": 60.0, "duration": 0.02, "shapes_interval": 0.0
 def unfolding():
     """Parameters, folder and summary of the beginning of the Miura sheet's unfolding."""
     O.reset()
-    p = PatternParameters(**SHORT)
+    p = PatternParameters(file=str(MIURA), **SHORT)
     folder = scratch() / "unfolding"
     with quiet():
-        summary = pattern_sail.fly(pattern_sail.read_sheet(MIURA, p), p, folder)
+        summary = driver.deploy(p, folder)
     O.reset()
     return p, folder, summary
 
 
 class TestPlace(unittest.TestCase):
     def test_the_centre_of_mass_lies_on_the_axis_flat_and_folded(self):
-        p = PatternParameters(size=0.0375)
-        sheet = pattern_sail.read_sheet(MIURA, p)
-        sail = pattern_sail.place(sheet, p)
+        p = PatternParameters(file=str(MIURA), size=0.0375)
+        sheet = read_sheet(p)
+        sail = place(sheet, p)
         areas = geometry.triangle_areas(sail.nodes, sail.triangles)
         mass = np.zeros(len(sail.nodes))
         np.add.at(mass, sail.triangles, p.density * p.thickness * areas[:, None] / 3)
@@ -44,13 +45,12 @@ class TestPlace(unittest.TestCase):
         for places in (sail.nodes, sail.start):
             np.testing.assert_allclose(mass @ places, 0, atol=1e-15)
         self.assertLess(np.ptp(sail.start[:, 0]), 0.4 * np.ptp(sail.nodes[:, 0]))
-        again = pattern_sail.place(sheet, PatternParameters(flat=True))
+        again = place(sheet, PatternParameters(flat=True))
         np.testing.assert_array_equal(again.start, again.nodes)
 
     def test_corners_of_the_miura_sheet_are_its_four(self):
-        sail = pattern_sail.place(
-            pattern_sail.read_sheet(MIURA, PatternParameters()), PatternParameters()
-        )
+        p = PatternParameters(file=str(MIURA))
+        sail = place(read_sheet(p), p)
         x, y, _ = sail.nodes[sail.tips].T
         self.assertEqual(len(x), 4)
         np.testing.assert_allclose(np.abs(x), np.ptp(sail.nodes[:, 0]) / 2, rtol=1e-9)
@@ -64,21 +64,17 @@ class TestPlace(unittest.TestCase):
             self.assertEqual(sorted(found), list(range(corners)))
 
     def test_a_mesh_says_where_its_tips_are(self):
-        sheet = pattern_sail.read_sheet(gmsh_sheet(), PatternParameters())
-        sail = pattern_sail.place(sheet, PatternParameters(hub_radius=1e-3))
+        sheet = read_sheet(PatternParameters(file=str(gmsh_sheet())))
+        sail = place(sheet, PatternParameters(hub_radius=1e-3))
         self.assertEqual(sail.tips.tolist(), sheet.groups["tips"].tolist())
         np.testing.assert_allclose(sail.nodes[sail.hub], 0, atol=1e-12)
-        alone = pattern_sail.place(sheet, PatternParameters())
+        alone = place(sheet, PatternParameters())
         self.assertEqual(alone.hub.tolist(), sheet.groups["hub"].tolist())
-        flying = pattern_sail.place(
-            pattern_sail.read_sheet(MIURA, PatternParameters()), PatternParameters()
-        )
+        p = PatternParameters(file=str(MIURA), tip_mass=0.0)
+        flying = place(read_sheet(p), p)
         self.assertEqual(len(flying.hub), 0)
         with self.assertRaisesRegex(ValueError, "no node is that near"):
-            pattern_sail.place(
-                pattern_sail.read_sheet(MIURA, PatternParameters()),
-                PatternParameters(hub_radius=1e-9, tip_mass=0.0),
-            )
+            place(read_sheet(p), replace(p, hub_radius=1e-9))
 
 
 class TestFlight(SceneTest):
@@ -94,10 +90,11 @@ class TestFlight(SceneTest):
         self.assertAlmostEqual(history["spin_rate"][0], p.omega, places=6)
 
     def test_a_driven_hub_turns_steadily(self):
-        p = PatternParameters(hub_radius=0.05, omega=20.0, duration=0.01, shapes_interval=0.01)
+        about = {"hub_radius": 0.05, "omega": 20.0, "duration": 0.01, "shapes_interval": 0.01}
+        p = PatternParameters(file=str(gmsh_sheet()), **about)
         folder = scratch() / "hub"
         with quiet():
-            summary = pattern_sail.fly(pattern_sail.read_sheet(gmsh_sheet(), p), p, folder, False)
+            summary = driver.deploy(p, folder, False)
         first, last = (np.array(f.coords) for f in read_fold(folder / "sail.fold").frames[1::1][:2])
         hub = summary["mesh"]["hub"]
         self.assertGreater(len(hub), 0)
@@ -130,8 +127,9 @@ class TestFlight(SceneTest):
     def test_what_it_leaves_can_be_flown_again(self):
         """Its own FOLD file is a pattern with a folded form, meshed as it is."""
         _, folder, _ = unfolding()
-        p = PatternParameters(start_frame=3, size=1.0)
-        sheet = pattern_sail.read_sheet(folder / "sail.fold", p)
+        sheet = read_sheet(
+            PatternParameters(file=str(folder / "sail.fold"), start_frame=3, size=1.0)
+        )
         kept = read_fold(folder / "sail.fold")
         self.assertEqual(len(sheet.triangles), len(kept.frames[0].faces))
         self.assertEqual(
@@ -201,15 +199,13 @@ class TestCommand(CommandTest):
             path = scratch() / "quads.msh"
             corners = np.roll(quads, turn, axis=1)
             meshio.Mesh(points, [("quad", corners)]).write(path, file_format="gmsh22")
-            p = PatternParameters()
             O.reset()
-            sheet = pattern_sail.read_sheet(path, p)
-            pattern_sail.build(pattern_sail.place(sheet, p), p)
+            driver.build(PatternParameters(file=str(path)))
             first = np.concatenate([corners[:, [0, 1, 2]], corners[:, [0, 2, 3]]])
             try:
                 Membrane(material=scene.film(), nodes=points, triangles=first)
             except ValueError as error:
-                spoilt += pattern_sail.REMESH in str(error)
+                spoilt += REMESH in str(error)
         self.assertGreater(spoilt, 0)
 
     def test_a_pattern_is_meshed_finer_where_that_alone_makes_no_triangle_too_flat(self):
@@ -220,15 +216,15 @@ class TestCommand(CommandTest):
         edges += [(7, 8), (8, 9), (9, 7)]
         content = {"vertices_coords": points, "edges_vertices": edges, "frame_unit": "m"}
         path.write_text(json.dumps({**content, "edges_assignment": [*"BBBBBBBVVVMMM"]}))
-        p = PatternParameters()
+        p = PatternParameters(file=str(path))
         O.reset()
-        sheet = pattern_sail.read_sheet(path, p)
+        sheet = read_sheet(p)
         (note,) = sheet.notes
         self.assertIn("with sides of 0.0537 m a triangle would be too flat", note)
         self.assertIn("0.0269 m long", note)
         self.assertIn(f"{len(sheet.triangles)} triangles", note)
-        pattern_sail.build(pattern_sail.place(sheet, p), p)
-        again = pattern_sail.read_sheet(path, PatternParameters(size=default_size(1.0) / 2))
+        driver.build(p, sail_of(sheet, p))
+        again = read_sheet(replace(p, size=default_size(1.0) / 2))
         self.assertEqual((again.notes, len(again.nodes)), ((), len(sheet.nodes)))
 
     def test_narrow_corner_is_refused_with_an_option_that_there_is(self):

@@ -20,7 +20,7 @@ from membrane.geometry import crease_angles
 from membrane.mesh import sail_mesh
 from membrane.parameters import SailParameters
 from membrane.results.output import list_series, read_frame, read_history
-from membrane.run import sail
+from membrane.run import driver
 from membrane.study.sweep.page import render
 from membrane.study.sweep.report import report as sweeping_report
 from membrane.view import plots, report
@@ -237,7 +237,7 @@ class TestReportWithoutViewer(unittest.TestCase):
         said = io.StringIO()
         with mock.patch.object(report, "TEMPLATE", folder / "absent.html"):
             with mock.patch("sys.stderr", said):
-                sail.write_page(folder)
+                driver.write_page(folder)
         self.assertRegex(said.getvalue(), "no report.html: .*scripts/run.sh viewer")
         self.assertFalse((folder / "report.html").exists())
 

@@ -9,7 +9,7 @@ from unittest import mock
 import numpy as np
 from membrane import scene
 from membrane.scene import bodies, spool
-from support import O, SceneTest, engines_by_class, grid
+from support import O, SceneTest, engines_by_class, grid, set_engines
 
 
 class TestSpool(SceneTest):
@@ -44,7 +44,7 @@ class TestDrivenBodies(SceneTest):
         nodes = [[0.025, 0, 0], [0.04, 0, 0]]
         net = scene.add_membrane(nodes, [], cables=[(0, 1)], pointMasses=[0.0, 1e-4])
         self.facets = spool.add_spool()
-        self.sail = scene.set_engines(
+        self.sail = set_engines(
             net,
             driven=[*self.facets, net.bodyIds[0]],
             touching=[net.bodyIds[1]],
@@ -155,12 +155,12 @@ class TestFreeScene(SceneTest):
     def test_sheet_that_touches_nothing_has_no_collider(self):
         nodes, triangles = grid(1)
         net = scene.add_membrane(nodes, triangles)
-        scene.set_engines(net)
+        set_engines(net)
         self.assertNotIn("InsertionSortCollider", engines_by_class())
 
     def test_advance_raises_what_an_engine_raises(self):
         nodes, triangles = grid(1)
-        sail = scene.set_engines(scene.add_membrane(nodes, triangles))
+        sail = set_engines(scene.add_membrane(nodes, triangles))
         O.dt = 2 * sail.forces.criticalTimeStep()
         for _ in range(3):
             with self.assertRaisesRegex(RuntimeError, "critical time step"):

@@ -9,9 +9,10 @@ from dataclasses import replace
 
 import numpy as np
 from membrane.mesh.sheet_words import described, doubts, slow_sides
-from membrane.parameters import PatternParameters
+from membrane.mesh.placing import place
 from membrane.results.output import read_history
-from membrane.run import pattern_sail
+from membrane.run import driver
+from membrane.run.sails.sheet import PatternParameters, read_sheet, sail_of
 from support import O, SceneTest, gmsh_sheet, scratch
 
 QUICK = True
@@ -29,8 +30,8 @@ def sheet_of(content, **parameters):
     """SheetMesh of a FOLD file's content, and its PatternParameters."""
     path = scratch() / "words.fold"
     path.write_text(json.dumps(content))
-    p = PatternParameters(**parameters)
-    return pattern_sail.read_sheet(path, p), p
+    p = PatternParameters(file=str(path), **parameters)
+    return read_sheet(p), p
 
 
 def with_gap(gap):
@@ -44,28 +45,30 @@ def flown(sheet, p, name):
     """Summary of a flight into a folder of scratch(), and what it said on standard error."""
     O.reset()
     with contextlib.redirect_stderr(io.StringIO()) as said:
-        summary = pattern_sail.fly(sheet, p, scratch() / name, pictures=False, page=False)
+        summary = driver.deploy(
+            p, scratch() / name, pictures=False, page=False, sail=sail_of(sheet, p)
+        )
     return summary, said.getvalue()
 
 
 class TestWords(unittest.TestCase):
     def test_one_line_tells_what_was_read(self):
-        p = PatternParameters()
-        sheet = pattern_sail.read_sheet(gmsh_sheet(), p)
-        words = described(sheet, pattern_sail.place(sheet, p))
+        p = PatternParameters(file=str(gmsh_sheet()))
+        sheet = read_sheet(p)
+        words = described(sheet, place(sheet, p))
         valleys = replace(sheet, crease_signs=-sheet.crease_signs, others=())
         self.assertEqual(
             words,
             f"0.4 x 0.4 m, {len(sheet.triangles)} triangles, creases of 4 sides (4 mountain, 0 "
             "valley), tips at 4 nodes, a hub of 1 node",
         )
-        words = described(valleys, pattern_sail.place(valleys, PatternParameters(tips="none")))
+        words = described(valleys, place(valleys, PatternParameters(tips="none")))
         self.assertIn("(0 mountain, 4 valley), tips at 0 nodes, a hub of 1 node", words)
-        farthest = pattern_sail.place(sheet, PatternParameters(tips="farthest"))
+        farthest = place(sheet, PatternParameters(tips="farthest"))
         self.assertIn("not used: tips", described(sheet, farthest))
 
     def test_a_sheet_as_it_should_be_raises_no_doubts(self):
-        self.assertEqual(doubts(pattern_sail.read_sheet(gmsh_sheet(), PatternParameters())), [])
+        self.assertEqual(doubts(read_sheet(PatternParameters(file=str(gmsh_sheet())))), [])
 
     def test_missing_creases_and_sizes_of_a_forgotten_unit_are_doubted(self):
         plain, _ = sheet_of({**PAIR, "edges_assignment": [*"BBBBBBF"]})
@@ -83,7 +86,7 @@ class TestSlowSides(SceneTest):
         """Critical step [s], and what slow_sides gives, of a sheet."""
         O.reset()
         sheet, p = sheet_of(content, **parameters)
-        made = pattern_sail.build(pattern_sail.place(sheet, p), p)
+        _, made = driver.build(p, sail_of(sheet, p))
         springs = (made.membrane.sides, made.membrane.stiffnesses, made.membrane.masses)
         rows, longer = slow_sides(sheet.nodes, *map(np.array, springs), p.zeta)
         ends = sheet.nodes[np.array(made.membrane.sides)[rows]]

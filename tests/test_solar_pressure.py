@@ -7,7 +7,7 @@ import unittest
 import membrane
 import numpy as np
 from membrane import scene
-from support import O, SceneTest, Sheet, grid, rotation
+from support import O, SceneTest, Sheet, grid, rotation, set_engines
 from yade import wrapper as yade
 
 P, SIDE = 4.54e-6, 0.3  # pressure [Pa]; of the plate [m]
@@ -94,7 +94,7 @@ class TestRun(SceneTest):
         """A free square sheet in the light, in the engines of a path: membrane, engines."""
         nodes, triangles = grid(4, 0.05)
         net = scene.add_membrane(nodes, triangles, interactions=path == "law2")
-        made = scene.set_engines(net, path=path, **options)
+        made = set_engines(net, path=path, **options)
         sun = membrane.SolarPressure(membrane=net, pressure=1.0, direction=(0, 0, -2))
         O.engines = [sun, *O.engines]
         O.dt = 0.2 * made.forces.criticalTimeStep()
@@ -207,7 +207,7 @@ class TestRefusals(SceneTest):
     def test_what_is_no_force(self):
         nodes, triangles = grid(1)
         net = scene.add_membrane(nodes, triangles)
-        scene.set_engines(net, path="fused")
+        set_engines(net, path="fused")
         O.engines = [membrane.MembraneForce(membrane=net), *O.engines]
         with self.assertRaisesRegex(RuntimeError, "MembraneForce is no force"):
             O.step()

@@ -19,10 +19,9 @@ import numpy as np
 from membrane.files import replacing, write_json
 from membrane.parameters import TABLE_2_CASES, SailParameters
 from membrane.results.case_folder import COMPLETE, DAMAGED, DIVERGED, FAILED, KILLED, MISSING, look
-from membrane.results.case_folder import part_of
+from membrane.results.case_folder import LAST_GOOD, part_of
 from membrane.results.history import read_history
 from membrane.results.output import HistoryWriter
-from membrane.run import sail
 from membrane.study.sweep import grid, results
 from membrane.view import report
 from processes import Halt, family, kill, send
@@ -132,7 +131,7 @@ class TestCase(SweepTest):
         history = (diverged() / "history.csv").read_text().splitlines()
         last = float(history[-1].split(",")[0])
         self.assertTrue(last < found["time"] < last + 2e-3, (last, found["time"]))
-        self.assertTrue((diverged() / sail.LAST_GOOD).exists())
+        self.assertTrue((diverged() / LAST_GOOD).exists())
 
     def test_killed_case_that_diverges_leaves_the_same_files(self):
         """Also after a power cut that took what was not yet on the disk."""

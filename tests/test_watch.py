@@ -8,8 +8,9 @@ import membrane
 import numpy as np
 from membrane import scene
 from membrane.parameters import SailParameters
-from membrane.run import sail
-from support import O, SceneTest, film_of_the_sail, scratch
+from membrane.results.case_folder import LAST_GOOD
+from membrane.run import driver
+from support import O, SceneTest, film_of_the_sail, scratch, set_engines
 
 
 class WatchTest(SceneTest):
@@ -18,7 +19,7 @@ class WatchTest(SceneTest):
         O.reset()
         mesh, flat = film_of_the_sail()
         self.net = scene.add_membrane(flat, mesh.triangles)
-        self.sail = scene.set_engines(
+        self.sail = set_engines(
             self.net, force_time_step=True, energy_tolerance=tolerance, **engine
         )
         rng = np.random.default_rng(4)
@@ -152,12 +153,12 @@ class TestDeploy(unittest.TestCase):
         folder = scratch() / "too_far"
         p = SailParameters(dt=2.6e-5, force_time_step=True, duration=0.05, shapes_interval=0)
         with self.assertRaisesRegex(RuntimeError, "last good state") as caught:
-            sail.deploy(p, folder, pictures=False)
+            driver.deploy(p, folder, pictures=False)
         self.assertRegex(str(caught.exception), "from nowhere|critical")
         text = (folder / "history.csv").read_text()
         self.assertIsNone(re.search("nan|inf", text))
         O.reset()
-        O.load(str(folder / sail.LAST_GOOD), quiet=True)
+        O.load(str(folder / LAST_GOOD), quiet=True)
         positions = np.array([body.state.pos for body in O.bodies])
         self.assertTrue(np.isfinite(positions).all())
         O.dt = 5e-6

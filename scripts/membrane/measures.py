@@ -1,13 +1,81 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What is measured on the sail (README, "Assumptions"): plain functions of a mesh and positions.
+"""What is measured on a sail: plain functions of a mesh and positions, and the lists of measures.
 
 The mesh is a SailMesh, positions are (N, 3) arrays [m] in the order of its nodes, in the frame of
-the spin axis.
+the spin axis. A measure is one entry of a list below: rows of history.csv, their units, plots,
+pages, tables and summary.json all go through these lists.
 """
+
+from dataclasses import dataclass
+from math import pi
+from typing import Any, Callable, NamedTuple
 
 import numpy as np
 
-from .geometry import triangle_areas
+from .geometry import area_vectors, crease_angles, side_lengths, triangle_areas
+
+
+class Shown(NamedTuple):
+    """A unit that people read, and how much of it the SI unit is."""
+
+    unit: str
+    factor: float
+
+
+DEGREES = Shown("deg", 180 / pi)
+RPM = Shown("rpm", 30 / pi)
+MILLIJOULES = Shown("mJ", 1e3)
+
+
+@dataclass(frozen=True)
+class Measure:
+    """What is measured at every row of a history.
+
+    Attributes
+    ----------
+    name, unit : str
+        Of its column; SI.
+    label : str
+        Of its line in a plot, and of its values in tables.
+    of : callable
+        Its value at a `run.record.Instant`.
+    plot : str
+        Title of the plot that shows it; "": none does.
+    shown : Shown or None
+        Unit in plots and tables; None: SI.
+    summary : tuple of str
+        Which of its values summary.json tells: "final", "largest".
+    minor : bool
+        Drawn thin, as one of several alike.
+    """
+
+    name: str
+    unit: str
+    label: str
+    of: Callable[[Any], float]
+    plot: str = ""
+    shown: Shown | None = None
+    summary: tuple[str, ...] = ()
+    minor: bool = False
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What summary.json tells of a whole run, among `measures`.
+
+    Attributes
+    ----------
+    name, unit, label, shown
+        As of a Measure.
+    of : callable
+        Its value, None if there is none, of a history: a dict of columns (S,).
+    """
+
+    name: str
+    unit: str
+    label: str
+    of: Callable[[dict], float | None]
+    shown: Shown | None = None
 
 
 def deployment_rate(mesh, positions):
@@ -123,17 +191,335 @@ def lag_and_half_period(time, phase):
     return float(np.degrees(found["largest_lag"])), float(lead - lagged)
 
 
-def energy_errors(history):
-    """How far the energies and works of a history (dict of (S,) [J]) are from adding up.
+# ------------------------------------------------------------------------------ rows of histories
 
-    Returns
-    -------
-    dict
-        `largest_energy_imbalance` [J], and `largest_unexplained_energy` [J]: the same without what
-        the integrator itself leaves where sides buckle or become taut within a step.
+
+def _phases(at):
+    """Azimuths (4,) of the tips against the spool [rad], 0 at the first row, continuous since."""
+    lead = tip_azimuths(at.mesh, at.x) - at.turned
+    first = at.kept.setdefault("first_lead", lead.tolist())
+    phases = nearest_turn(lead - first, np.array(at.kept.get("phases", [0.0] * 4)))
+    at.kept["phases"] = phases.tolist()
+    return phases
+
+
+def _tip(number):
+    """Measure of the phase difference of one tip."""
+    name, label = f"phase_difference_{number}", f"tip {number}"
+    return Measure(
+        name, "rad", label, lambda at: at.once(_phases)[number], PHASE, DEGREES, minor=True
+    )
+
+
+PHASE = "phase difference"
+
+SQUARE = (
+    Measure(
+        "deployment_rate",
+        "-",
+        "rate",
+        lambda at: deployment_rate(at.mesh, at.x),
+        "deployment rate",
+        summary=("final", "largest"),
+    ),
+    Measure("mean_tip_radius", "m", "of the tips", lambda at: mean_tip_radius(at.mesh, at.x)),
+    Measure(
+        "mean_edge_middle_radius",
+        "m",
+        "of the outer edges' middles",
+        lambda at: mean_edge_middle_radius(at.mesh, at.x),
+    ),
+    Measure(
+        "phase_difference",
+        "rad",
+        "mean",
+        lambda at: float(at.once(_phases).mean()),
+        PHASE,
+        DEGREES,
+    ),
+    *map(_tip, range(4)),
+)
+
+
+def _radii(at):
+    return _radius(at.x)
+
+
+def _inertia(at):
+    """Moment of inertia of the nodes about z [kg m2]."""
+    return float(np.sum(at.masses * at.once(_radii) ** 2))
+
+
+def _tip_radius(at):
+    radii = at.once(_radii)
+    return float(np.mean(radii[at.tips] if len(at.tips) else radii))
+
+
+def _projected_area(at):
+    return float(area_vectors(at.x, at.mesh.triangles)[:, 2].sum() / at.rest_areas.sum())
+
+
+def _mean_crease_angle(at):
+    mesh = at.mesh
+    angles = crease_angles(at.x, mesh.triangles, mesh.creases, mesh.crease_signs)
+    return float(angles.mean()) if len(angles) else pi
+
+
+SHEET = (
+    Measure(
+        "mean_radius",
+        "m",
+        "mean of the masses",
+        lambda at: float(np.average(at.once(_radii), weights=at.masses)),
+        summary=("final",),
+    ),
+    Measure("tip_radius", "m", "of the tips", _tip_radius, "radius", summary=("final",)),
+    Measure(
+        "projected_area",
+        "-",
+        "projected",
+        _projected_area,
+        "area over flat area",
+        summary=("final", "largest"),
+    ),
+    Measure("height", "m", "height", lambda at: float(np.ptp(at.x[:, 2])), summary=("final",)),
+    Measure(
+        "mean_crease_angle",
+        "rad",
+        "mean",
+        _mean_crease_angle,
+        "crease angle",
+        DEGREES,
+        summary=("final",),
+    ),
+    Measure(
+        "spin_rate",
+        "rad/s",
+        "mean of the sail",
+        lambda at: float(at.ledger.angularMomentum / at.once(_inertia)),
+        "spin",
+        summary=("final",),
+    ),
+)
+
+ENERGY = "energy"
+LEDGER = (
+    Measure("kinetic_energy", "J", "kinetic", lambda at: at.ledger.kinetic, ENERGY),
+    Measure("elastic_energy", "J", "elastic", lambda at: at.ledger.elastic, ENERGY),
+    Measure("crease_energy", "J", "creases", lambda at: at.once(_crease_energy), ENERGY),
+    Measure("gravity_energy", "J", "gravity", lambda at: at.ledger.potential),
+    Measure("crease_work", "J", "work of creases", lambda at: at.ledger.creaseWork),
+    Measure("damping_work", "J", "damping work", lambda at: at.ledger.dampingWork, ENERGY),
+    Measure("drag_work", "J", "drag work", lambda at: at.ledger.dragWork),
+    Measure("spool_work", "J", "spool work", lambda at: at.ledger.drivenWork, ENERGY),
+    Measure("contact_work", "J", "work of contacts", lambda at: at.ledger.contactWork),
+    Measure("energy_balance", "J", "balance", lambda at: at.ledger.balance),
+    Measure("kink_error", "J", "error at kinks", lambda at: at.ledger.kinkError),
+    Measure(
+        "crease_defect",
+        "J",
+        "energy of creases less their work",
+        lambda at: at.once(_crease_energy) - at.ledger.initialCrease + at.ledger.creaseWork,
+    ),
+    Measure("angular_momentum", "kg m2/s", "momentum", lambda at: at.ledger.angularMomentum),
+    Measure("angular_impulse", "kg m2/s", "impulse", lambda at: at.ledger.angularImpulse),
+    Measure(
+        "buckled_sides",
+        "-",
+        "buckled sides",
+        lambda at: int(np.sum(side_lengths(at.x, at.sides) < at.critical)),
+    ),
+)
+
+
+def _crease_energy(at):
+    return at.ledger.crease  # computed at each call
+
+
+def _hub_inertia(at):
+    return at.hub.inertia + float(np.sum(at.masses * np.sum(at.x[:, :2] ** 2, axis=1)))
+
+
+HUB = (
+    Measure(
+        "hub_spin", "rad/s", "spin", lambda at: 0.5 * (at.hub.spinBefore + at.hub.spin), "hub", RPM
+    ),
+    Measure("hub_angle", "rad", "angle", lambda at: at.turned),
+    Measure("hub_energy", "J", "energy", lambda at: at.hub.kinetic),
+    Measure("hub_torque", "N m", "torque", lambda at: at.hub.torque),
+    Measure("inertia", "kg m2", "of hub and sail", _hub_inertia),
+)
+
+
+# ------------------------------------------------------------------------------ outcomes of runs
+
+
+def summarised(measures):
+    """Outcomes that the `summary` of Measures asks for."""
+    words = {"final": ("at the end", lambda v: v[-1]), "largest": ("at most", np.max)}
+    found = []
+    for m in measures:
+        for which in m.summary:
+            word, pick = words[which]
+            label = f"{m.plot or m.label}, {word}"
+            found.append(
+                Outcome(
+                    f"{which}_{m.name}",
+                    m.unit,
+                    label,
+                    lambda h, name=m.name, pick=pick: float(pick(h[name])),
+                    m.shown,
+                )
+            )
+    return tuple(found)
+
+
+def _time_above(column):
+    return lambda h: first_time_above(h["time"], h[column], 0.9)
+
+
+def _swing(name):
+    return lambda h: swing(h["time"], h["phase_difference"])[name]
+
+
+SQUARE_OUTCOMES = (
+    *summarised(SQUARE),
+    Outcome(
+        "time_of_rate_0.9", "s", "deployment rate above 0.9 from", _time_above("deployment_rate")
+    ),
+    Outcome("largest_lag", "rad", "largest lag of the tips", _swing("largest_lag"), DEGREES),
+    Outcome("time_of_largest_lag", "s", "time of the largest lag", _swing("time_of_largest_lag")),
+    Outcome("return_time", "s", "tips back at the spool's angle", _swing("return_time")),
+)
+SHEET_OUTCOMES = (
+    *summarised(SHEET),
+    Outcome("time_of_area_0.9", "s", "area above 0.9 from", _time_above("projected_area")),
+    Outcome(
+        "largest_change_of_angular_momentum",
+        "kg m2/s",
+        "largest change of angular momentum beyond the impulse",
+        lambda h: float(np.ptp(h["angular_momentum"] - h["angular_impulse"])),
+    ),
+)
+
+
+def _late(column):
+    """Function of a history: mean of a column over the last quarter of the time."""
+    return lambda h: float(np.mean(h[column][h["time"] >= 0.75 * h["time"][-1]]))
+
+
+def spin_by_momentum(history):
+    """Spin (S,) [rad/s] that the angular momentum makes of the shape, on a free hub."""
+    return history["angular_momentum"] / history["inertia"]
+
+
+def _drift(h):
+    momentum = h["angular_momentum"]
+    return float(np.abs(momentum / momentum[0] - 1).max())
+
+
+HUB_OUTCOMES = (  # of a hub that turns freely; after: mean over the last quarter of the time
+    Outcome(
+        "spin_before", "rad/s", "spin of the hub before", lambda h: float(h["hub_spin"][0]), RPM
+    ),
+    Outcome("spin_after", "rad/s", "spin of the hub after", _late("hub_spin"), RPM),
+    Outcome(
+        "spin_after_by_momentum",
+        "rad/s",
+        "after, by angular momentum",
+        lambda h: _late("spin")({**h, "spin": spin_by_momentum(h)}),
+        RPM,
+    ),
+    Outcome("inertia_before", "kg m2", "inertia before", lambda h: float(h["inertia"][0])),
+    Outcome("inertia_after", "kg m2", "inertia after", _late("inertia")),
+    Outcome("kinetic_energy_after", "J", "kinetic energy after", _late("kinetic_energy")),
+    Outcome(
+        "largest_change_of_hub_energy",
+        "J",
+        "largest change of the hub's energy",
+        lambda h: float(np.abs(h["hub_energy"] - h["hub_energy"][0]).max()),
+    ),
+    Outcome("angular_momentum_drift", "-", "drift of angular momentum", _drift),
+)
+
+LEDGER_OUTCOMES = (
+    Outcome(
+        "largest_spool_work",
+        "J",
+        "largest work of the spool",
+        lambda h: float(np.abs(h["spool_work"]).max()),
+        MILLIJOULES,
+    ),
+    Outcome(
+        "largest_energy",
+        "J",
+        "largest kinetic energy",
+        lambda h: float(h["kinetic_energy"].max()),
+        MILLIJOULES,
+    ),
+    Outcome(
+        "largest_energy_imbalance",
+        "J",
+        "largest energy imbalance",
+        lambda h: float(np.abs(h["energy_balance"]).max()),
+        MILLIJOULES,
+    ),
+    Outcome(
+        "largest_unexplained_energy",
+        "J",
+        "energy from nowhere, at most",
+        lambda h: float(np.abs(h["energy_balance"] - h["kink_error"]).max()),
+        MILLIJOULES,
+    ),
+)
+
+
+# ------------------------------------------------------------------------------ plots
+
+
+class Plot(NamedTuple):
+    """A plot of a history: its title, the unit shown and its factor from SI, lines."""
+
+    title: str
+    unit: str
+    factor: float
+    lines: list[Measure]
+
+
+def in_plots(measures, history):
+    """Plots of those Measures that have one and are columns of a history, in their order.
+
+    What is 0 throughout, as the spool's work where there is none, would hide other lines: it is
+    left out.
     """
-    balance, kinks = history["energy_balance"], history["kink_error"]
-    return {
-        "largest_energy_imbalance": float(np.abs(balance).max()),
-        "largest_unexplained_energy": float(np.abs(balance - kinks).max()),
-    }
+    found = {}
+    for m in measures:
+        if m.plot and m.name in history:
+            found.setdefault(m.plot, []).append(m)
+    result = []
+    for title, lines in found.items():
+        told = [m for m in lines if history[m.name].any()] or lines[:1]
+        result.append(Plot(title, *(lines[0].shown or (lines[0].unit, 1.0)), told))
+    return result
+
+
+EVERY = SQUARE + SHEET + HUB + LEDGER  # whichever a run has
+EVERY_OUTCOME = SQUARE_OUTCOMES + SHEET_OUTCOMES + HUB_OUTCOMES + LEDGER_OUTCOMES
+
+
+def table(found):
+    """Rows of label, value and unit, all texts, of what a summary tells among its measures."""
+    known, rows = {outcome.name: outcome for outcome in EVERY_OUTCOME}, []
+    for name, value in found.items():
+        if name not in known:
+            label, unit, factor = name.replace("_", " "), "", 1.0
+        else:
+            about = known[name]
+            label, (unit, factor) = about.label, about.shown or (about.unit, 1.0)
+        if value is None:
+            rows.append([label, "never", ""])
+        elif type(value) in (int, float):
+            if unit == MILLIJOULES.unit and abs(value) >= 1:
+                unit, factor = "J", 1.0
+            rows.append([label, f"{factor * value:.4g}", unit])
+    return rows

@@ -7,14 +7,16 @@ command line, yade-batch table and summary.json all come from it.
 
 import argparse
 import os
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import Field, asdict, dataclass, field, fields, is_dataclass
 from math import inf, pi
 from numbers import Real
+from typing import ClassVar
 
 from .files import BadFile, read_object, shown
 
 TABLE_1, TABLE_2, ASSUMED, RUN = "Table 1", "Table 2", "assumed", "run"
 SHEET, SPIN = "sheet", "spin"
+PATHS = ("law2", "fused")  # who moves the nodes
 
 # The cases that the paper compares, and how long it takes to see the largest lag of the tips and
 # the largest lead that follows [s].
@@ -25,20 +27,32 @@ LARGEST_WHOLE = 2**31 - 1
 MOST_STEPS = 2**53  # of a run: more cannot be told apart
 
 
-def _parameter(default, unit, source, text, least=0.0, most=inf, above=False, choices=None):
-    """A field with its unit, source, meaning and range; `above`: `least` itself is excluded."""
+def parameter(
+    default, unit, source, text, least=0.0, most=inf, above=False, choices=None, sets=None
+):
+    """A field of a dataclass of parameters.
+
+    Parameters
+    ----------
+    default : int, float, str or bool
+    unit, source, text : str
+        SI unit or "-"; where the value comes from; meaning.
+    least, most : float
+        Its range; `above`: `least` itself is excluded.
+    choices : tuple of str, optional
+        Of a word.
+    sets : str, optional
+        The attribute of a class of YADE that it sets, as "Membrane.alpha".
+    """
+    about = {"unit": unit, "source": source, "text": text, "least": least, "most": most}
     return field(
-        default=default,
-        metadata={
-            "unit": unit,
-            "source": source,
-            "text": text,
-            "least": least,
-            "most": most,
-            "above": above,
-            "choices": choices,
-        },
+        default=default, metadata={**about, "above": above, "choices": choices, "sets": sets}
     )
+
+
+def changed(default, **about):
+    """A field for `with_defaults`, of another default and with other metadata than it had."""
+    return field(default=default, metadata=about)
 
 
 class Refused(argparse.ArgumentTypeError, ValueError):
@@ -78,11 +92,252 @@ PARSERS = {int: whole, float: number, str: str}  # of words
 
 
 @dataclass(frozen=True)
-class SailParameters:
-    """Parameters of the deployment.
+class Film:
+    """The material of the film and how it buckles."""
 
-    `dataclasses.fields(SailParameters)` lists them; `metadata` of each has the meaning ("text"),
-    "unit", "source" and range ("least", "most", "choices"), `describe` puts these into words.
+    thickness: float = parameter(
+        7.5e-6, "m", TABLE_1, "thickness h of the film", above=True, sets="MembraneMat.thickness"
+    )
+    young: float = parameter(
+        3.2e9, "Pa", TABLE_1, "Young's modulus E", above=True, sets="MembraneMat.young"
+    )
+    poisson: float = parameter(
+        0.34,
+        "-",
+        TABLE_1,
+        "Poisson's ratio nu",
+        least=-1,
+        most=0.5,
+        above=True,
+        sets="MembraneMat.poisson",
+    )
+    density: float = parameter(
+        1420.0, "kg/m3", TABLE_1, "density rho of the film", above=True, sets="MembraneMat.density"
+    )
+    alpha: float = parameter(
+        100.0, "-", TABLE_2, "buckling parameter of the film", sets="Membrane.alpha"
+    )
+    zeta: float = parameter(
+        0.02, "-", TABLE_2, "damping ratio; 0: none", sets="MembraneForceEngine.zeta"
+    )
+
+
+@dataclass(frozen=True)
+class Creases:
+    """The fold lines."""
+
+    theta0: float = parameter(
+        0.0,
+        "rad",
+        TABLE_2,
+        "natural angle of the creases",
+        most=pi,
+        sets="MembraneForceEngine.theta0",
+    )
+    alpha_crease: float = parameter(
+        1000.0, "-", TABLE_2, "buckling parameter alpha_c of creases", sets="Membrane.alphaCrease"
+    )
+    beta: float = parameter(
+        30.0, "-", TABLE_2, "crease stiffness; 0: no creases", sets="MembraneForceEngine.beta"
+    )
+    gamma: float = parameter(
+        100.0,
+        "-",
+        TABLE_2,
+        "penalty on creases that passed through",
+        sets="MembraneForceEngine.gamma",
+    )
+    crease_law: str = parameter(
+        "paper",
+        "-",
+        ASSUMED,
+        "(7) as printed or derived from an energy",
+        choices=("paper", "conservative"),
+        sets="MembraneForceEngine.creaseLaw",
+    )
+
+
+@dataclass(frozen=True)
+class Air:
+    """What is around the sail."""
+
+    air_density: float = parameter(
+        1.2e-3,
+        "kg/m3",
+        ASSUMED,
+        "air left in the chamber; 0: none",
+        sets="MembraneForceEngine.airDensity",
+    )
+    gravity: float = parameter(9.81, "m/s2", ASSUMED, "along -z")
+
+
+@dataclass(frozen=True)
+class Hub:
+    """What turns, about z."""
+
+    omega: float = parameter(6 * pi, "rad/s", TABLE_1, "spin rate of the spool", above=True)
+    hub_inertia: float = parameter(
+        0.0, "kg m2", ASSUMED, "of a hub that turns freely, about the axis; 0: driven at omega"
+    )
+
+
+@dataclass(frozen=True)
+class Spool:
+    """The cylinder in the middle, of facets."""
+
+    spool_radius: float = parameter(0.025, "m", TABLE_1, "radius of the spool", above=True)
+    spool_height: float = parameter(0.06, "m", ASSUMED, "height of the spool", above=True)
+    spool_facets: int = parameter(36, "-", ASSUMED, "flat faces of the spool", least=3, most=10_000)
+    spool_young: float = parameter(
+        1e6, "Pa", ASSUMED, "stiffness of the spool's contact", above=True
+    )
+    spool_friction: float = parameter(
+        0.3, "rad", ASSUMED, "friction angle of tethers on the spool", most=1.5
+    )
+
+
+@dataclass(frozen=True)
+class Tethers:
+    """Between spool and sail."""
+
+    tether_segments: int = parameter(
+        4, "-", ASSUMED, "segments of each tether", least=1, most=10_000
+    )
+    tether_stiffness: float = parameter(
+        200.0, "N", ASSUMED, "EA of the tethers", above=True, sets="Membrane.cableStiffness"
+    )
+    tether_density: float = parameter(
+        2e-4,
+        "kg/m",
+        ASSUMED,
+        "mass a length of the tethers",
+        above=True,
+        sets="Membrane.cableDensity",
+    )
+    tether_radius: float = parameter(
+        5e-4, "m", ASSUMED, "radius of tether masses in contact", above=True
+    )
+
+
+@dataclass(frozen=True)
+class SquareSail:
+    """The paper's square of four petals, and how it is folded."""
+
+    fold_lines: int = parameter(7, "-", TABLE_1, "fold lines on each petal", least=1, most=1000)
+    outer_width: float = parameter(0.455, "m", TABLE_1, "outer width", above=True)
+    inner_width: float = parameter(0.103, "m", TABLE_1, "inner width", above=True)
+    tip_mass: float = parameter(0.36e-3, "kg", TABLE_1, "mass at each of the four corners")
+    bar_radius: float = parameter(
+        0.030, "m", ASSUMED, "distance of the guide bars from the axis", above=True
+    )
+    arm_radius: float = parameter(
+        0.040, "m", ASSUMED, "where a folded strip reaches its arm", above=True
+    )
+    layer_gap: float = parameter(1e-4, "m", ASSUMED, "distance of the folded layers", above=True)
+    refine: int = parameter(1, "-", RUN, "strips and cells are divided by it", least=1, most=32)
+
+
+@dataclass(frozen=True)
+class Engines:
+    """Who computes, and what is watched."""
+
+    path: str = parameter(
+        "fused",
+        "-",
+        RUN,
+        "who moves the nodes: law2, YADE's loops, the reference; fused, one engine, faster",
+        choices=PATHS,
+    )
+    exchange_period: int = parameter(
+        100,
+        "-",
+        RUN,
+        "path fused: steps between two updates of YADE's bodies",
+        least=1,
+        sets="MembraneIntegrator.exchangePeriod",
+    )
+    energy_tolerance: float = parameter(
+        0.1, "-", RUN, "energy from nowhere, over all energy, that stops the run; 0: no watch"
+    )
+    force_time_step: bool = parameter(
+        False,
+        "-",
+        RUN,
+        "run even above the critical time step",
+        sets="MembraneForceEngine.forceTimeStep",
+    )
+
+
+@dataclass(frozen=True)
+class Run:
+    """Steps, and what is written down."""
+
+    dt: float = parameter(0.0, "s", RUN, "time step; 0: half the critical one")
+    duration: float = parameter(1.0, "s", RUN, "time to run after the release")
+    history_interval: float = parameter(1e-3, "s", RUN, "between rows of history.csv", above=True)
+    shapes_interval: float = parameter(1e-2, "s", RUN, "between shapes; 0: only first and last")
+
+
+@dataclass(frozen=True)
+class SpinUp:
+    """How a folded sail is brought to rest in the turning frame."""
+
+    spin_up_damping: float = parameter(
+        0.3, "-", RUN, "local damping during spin-up", above=True, most=0.99
+    )
+    spin_up_tolerance: float = parameter(
+        1e-6, "-", RUN, "residual energy that ends the spin-up", above=True
+    )
+
+
+def with_defaults(**values):
+    """Decorator of a dataclass of parameters, whose parts have other defaults than these `values`.
+
+    Some have another text, too: then a value is a field.
+    """
+
+    def change(kind):
+        known = {item.name: item for base in kind.__mro__[:0:-1] for item in _fields_of(base)}
+        for name, value in values.items():
+            item = known[name]
+            about = {**item.metadata, **(value.metadata if isinstance(value, Field) else {})}
+            default = value.default if isinstance(value, Field) else value
+            kind.__annotations__[name] = item.type
+            setattr(kind, name, field(default=default, metadata=about))
+        return dataclass(frozen=True)(kind)
+
+    return change
+
+
+def _fields_of(kind):
+    """Fields of a class, () if it is no dataclass."""
+    return fields(kind) if is_dataclass(kind) else ()
+
+
+@dataclass(frozen=True)
+class SceneParts(Engines, Hub, Air, Creases, Film):
+    """What add_membrane and set_engines need, with the values of the paper's Tables."""
+
+    def __post_init__(self):
+        check(self)
+
+
+@with_defaults(
+    alpha_crease=100.0,
+    beta=0.0,
+    zeta=0.0,
+    air_density=0.0,
+    gravity=0.0,
+    omega=changed(0.0, source=SPIN, text="rate at which what is driven turns", above=False),
+    path="law2",
+    exchange_period=1,
+)
+class SceneParameters(SceneParts):
+    """What add_membrane and set_engines need: by default film alone, and YADE's own loops.
+
+    `dataclasses.fields(SceneParameters)` lists them; `metadata` of each has the meaning ("text"),
+    "unit", "source" and range ("least", "most", "choices"), `describe` puts these into words, and
+    "sets" names the attribute of YADE's class that follows from it, if it is just one.
 
     Raises
     ------
@@ -90,162 +345,35 @@ class SailParameters:
         Naming parameter, value and range, if one is out of range.
     """
 
-    fold_lines: int = _parameter(7, "-", TABLE_1, "fold lines on each petal", least=1, most=1000)
-    outer_width: float = _parameter(0.455, "m", TABLE_1, "outer width", above=True)
-    inner_width: float = _parameter(0.103, "m", TABLE_1, "inner width", above=True)
-    thickness: float = _parameter(7.5e-6, "m", TABLE_1, "thickness h of the film", above=True)
-    spool_radius: float = _parameter(0.025, "m", TABLE_1, "radius of the spool", above=True)
-    young: float = _parameter(3.2e9, "Pa", TABLE_1, "Young's modulus E", above=True)
-    poisson: float = _parameter(
-        0.34, "-", TABLE_1, "Poisson's ratio nu", least=-1, most=0.5, above=True
-    )
-    density: float = _parameter(1420.0, "kg/m3", TABLE_1, "density rho of the film", above=True)
-    tip_mass: float = _parameter(0.36e-3, "kg", TABLE_1, "mass at each of the four corners")
-    omega: float = _parameter(6 * pi, "rad/s", TABLE_1, "spin rate of the spool", above=True)
 
-    theta0: float = _parameter(0.0, "rad", TABLE_2, "natural angle of the creases", most=pi)
-    alpha: float = _parameter(100.0, "-", TABLE_2, "buckling parameter of the film")
-    alpha_crease: float = _parameter(1000.0, "-", TABLE_2, "buckling parameter alpha_c of creases")
-    beta: float = _parameter(30.0, "-", TABLE_2, "crease stiffness; 0: no creases")
-    gamma: float = _parameter(100.0, "-", TABLE_2, "penalty on creases that passed through")
-    zeta: float = _parameter(0.02, "-", TABLE_2, "damping ratio; 0: none")
+KINDS = {}  # classes of parameters by the name of their kind of sail
 
-    crease_law: str = _parameter(
-        "paper",
-        "-",
-        ASSUMED,
-        "(7) as printed or derived from an energy",
-        choices=("paper", "conservative"),
-    )
-    air_density: float = _parameter(1.2e-3, "kg/m3", ASSUMED, "air left in the chamber; 0: none")
-    gravity: float = _parameter(9.81, "m/s2", ASSUMED, "along -z")
-    hub_inertia: float = _parameter(
-        0.0, "kg m2", ASSUMED, "of a spool that turns freely, about the axis; 0: driven at omega"
-    )
-    tether_segments: int = _parameter(
-        4, "-", ASSUMED, "segments of each tether", least=1, most=10_000
-    )
-    tether_stiffness: float = _parameter(200.0, "N", ASSUMED, "EA of the tethers", above=True)
-    tether_density: float = _parameter(
-        2e-4, "kg/m", ASSUMED, "mass a length of the tethers", above=True
-    )
-    tether_radius: float = _parameter(
-        5e-4, "m", ASSUMED, "radius of tether masses in contact", above=True
-    )
-    spool_height: float = _parameter(0.06, "m", ASSUMED, "height of the spool", above=True)
-    spool_facets: int = _parameter(
-        36, "-", ASSUMED, "flat faces of the spool", least=3, most=10_000
-    )
-    spool_young: float = _parameter(
-        1e6, "Pa", ASSUMED, "stiffness of the spool's contact", above=True
-    )
-    spool_friction: float = _parameter(
-        0.3, "rad", ASSUMED, "friction angle of tethers on the spool", most=1.5
-    )
-    bar_radius: float = _parameter(
-        0.030, "m", ASSUMED, "distance of the guide bars from the axis", above=True
-    )
-    arm_radius: float = _parameter(
-        0.040, "m", ASSUMED, "where a folded strip reaches its arm", above=True
-    )
-    layer_gap: float = _parameter(1e-4, "m", ASSUMED, "distance of the folded layers", above=True)
 
-    refine: int = _parameter(1, "-", RUN, "strips and cells are divided by it", least=1, most=32)
-    dt: float = _parameter(5e-6, "s", RUN, "time step of the run", above=True)
-    duration: float = _parameter(1.0, "s", RUN, "time to run after the release")
-    history_interval: float = _parameter(1e-3, "s", RUN, "between rows of history.csv", above=True)
-    shapes_interval: float = _parameter(1e-2, "s", RUN, "between shapes; 0: only first and last")
-    spin_up_damping: float = _parameter(
-        0.3, "-", RUN, "local damping during spin-up", above=True, most=0.99
-    )
-    spin_up_tolerance: float = _parameter(
-        1e-6, "-", RUN, "residual energy that ends the spin-up", above=True
-    )
-    energy_tolerance: float = _parameter(
-        0.1, "-", RUN, "energy from nowhere, over all energy, that stops the run", above=True
-    )
-    path: str = _parameter(
-        "fused",
-        "-",
-        RUN,
-        "who moves the nodes: law2, YADE's loops, the reference; fused, one engine, faster",
-        choices=("law2", "fused"),
-    )
-    exchange_period: int = _parameter(
-        100, "-", RUN, "path fused: steps between two updates of YADE's bodies", least=1
-    )
-    force_time_step: bool = _parameter(False, "-", RUN, "run even above the critical time step")
+@dataclass(frozen=True)
+class RunParameters(Run, SceneParts):
+    """What any run of a sail needs. A class of a kind of sail is one of KINDS from then on."""
+
+    sail: ClassVar[str]
+
+    def __init_subclass__(cls, sail=None):
+        super().__init_subclass__()
+        if sail:
+            cls.sail = sail
+            KINDS[sail] = cls
 
     def __post_init__(self):
-        check(self)
-        check_steps(self.duration, self.dt)
+        super().__post_init__()
+        if self.dt:
+            check_steps(self.duration, self.dt)
 
     def as_dict(self):
         """Values by name."""
         return asdict(self)
 
 
-def _as_in_the_paper(name, **changes):
-    """A parameter of the paper's sail, with another default maybe."""
-    (known,) = [item for item in fields(SailParameters) if item.name == name]
-    return field(default=changes.get("default", known.default), metadata=known.metadata)
-
-
-@dataclass(frozen=True)
-class PatternParameters:
-    """Parameters of a sail from a file; those with names as in SailParameters mean the same."""
-
-    unit: float = _parameter(0.0, "m", SHEET, "length of the file's unit; 0: as the file says")
-    size: float = _parameter(0.0, "m", SHEET, "length of the mesh's sides; 0: some 800 triangles")
-    start_frame: int = _parameter(
-        -1, "-", SHEET, "frame to start from; -1: the first folded form, if any", least=-1
-    )
-    flat: bool = _parameter(False, "-", SHEET, "start flat even if there is a folded form")
-
-    omega: float = _parameter(6 * pi, "rad/s", SPIN, "spin rate at the start")
-    hub_radius: float = _parameter(
-        0.0,
-        "m",
-        SPIN,
-        "nodes this near the axis turn steadily, as those of a mesh's group 'hub' do; "
-        "0, and no such group: the sail flies free",
-    )
-    tip_mass: float = _parameter(0.36e-3, "kg", SPIN, "mass at each tip")
-    tips: str = _parameter(
-        "corners",
-        "-",
-        SPIN,
-        "where the tip masses are: at a mesh's group 'tips' or else the corners of the outline, "
-        "or at the nodes farthest from the axis",
-        choices=("corners", "farthest", "none"),
-    )
-    gravity: float = _parameter(0.0, "m/s2", SPIN, "along -z")
-
-    thickness: float = _as_in_the_paper("thickness")
-    young: float = _as_in_the_paper("young")
-    poisson: float = _as_in_the_paper("poisson")
-    density: float = _as_in_the_paper("density")
-    theta0: float = _as_in_the_paper("theta0")
-    alpha: float = _as_in_the_paper("alpha")
-    alpha_crease: float = _as_in_the_paper("alpha_crease", default=100.0)
-    beta: float = _as_in_the_paper("beta", default=3.0)
-    gamma: float = _as_in_the_paper("gamma")
-    zeta: float = _as_in_the_paper("zeta")
-    # The law as printed is no gradient where triangles at a crease are not equally high.
-    crease_law: str = _as_in_the_paper("crease_law", default="conservative")
-    air_density: float = _as_in_the_paper("air_density", default=0.0)
-
-    dt: float = _parameter(0.0, "s", RUN, "time step; 0: half the critical one")
-    duration: float = _as_in_the_paper("duration")
-    history_interval: float = _as_in_the_paper("history_interval")
-    shapes_interval: float = _as_in_the_paper("shapes_interval")
-    energy_tolerance: float = _as_in_the_paper("energy_tolerance")
-    path: str = _as_in_the_paper("path")
-    exchange_period: int = _as_in_the_paper("exchange_period")
-    force_time_step: bool = _as_in_the_paper("force_time_step")
-
-    def __post_init__(self):
-        check(self)
+@with_defaults(dt=5e-6)
+class SailParameters(RunParameters, SpinUp, Tethers, Spool, SquareSail, sail="square"):
+    """Parameters of the paper's deployment: as of SceneParameters."""
 
 
 def check(parameters):
@@ -279,6 +407,10 @@ def _check(item, value):
             raise ValueError(
                 f"{item.name} = {shown(value)} must be one of {', '.join(about['choices'])}"
             )
+        return
+    if item.type is str:
+        if not isinstance(value, str) or "\0" in value:
+            raise ValueError(f"{item.name} = {shown(value)} must be a text")
         return
     if not isinstance(value, Real) or isinstance(value, bool):
         raise ValueError(f"{item.name} = {shown(value)} must be a number")
@@ -321,6 +453,23 @@ def describe(item, default=None):
     values = default if isinstance(default, list) else [default]
     words = " ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in values)
     return f"{about['text']}{unit} ({extent}{more}default {words})"
+
+
+def attributes(kind, parameters):
+    """Attributes of a class of YADE, by name, that follow from parameters: a dict.
+
+    Parameters
+    ----------
+    kind : str
+        As "MembraneMat".
+    parameters : dataclass
+    """
+    found = {}
+    for item in fields(parameters):
+        owner, _, name = (item.metadata["sets"] or "").partition(".")
+        if owner == kind:
+            found[name] = getattr(parameters, item.name)
+    return found
 
 
 def read_values(path, kind=SailParameters):

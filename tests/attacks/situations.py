@@ -8,7 +8,7 @@ import numpy as np
 from arsenal import CLASSES
 from membrane import scene
 from membrane.scene import spool
-from support import O, grid
+from support import O, grid, set_engines
 from yade import wrapper as yade
 
 RADIUS, NODE, PIECE = 0.025, 5e-4, 3e-3  # of the spool, of a node, of the tether [m]
@@ -36,7 +36,7 @@ def build(path):
         interactions=path == "law2",
         radius=NODE,
     )
-    made = scene.set_engines(
+    made = set_engines(
         net,
         path=path,
         exchange_period=3,
@@ -44,7 +44,7 @@ def build(path):
         touching=net.bodyIds[first + 1 :],
         omega=20.0,
         hub_inertia=1e-6,
-        gravity=(0, 0, -9.81),
+        gravity=9.81,
         beta=3,
         zeta=0.02,
         air_density=1e-3,

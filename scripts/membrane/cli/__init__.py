@@ -10,7 +10,7 @@ import sys
 from .errors import plain_errors
 
 
-def run(command, stopped="stopped by Ctrl-C"):
+def run(command, stopped="stopped by Ctrl-C", module=None, **options):
     """Run `main` of a command's module; if it returns anything, that is the exit status.
 
     Parameters
@@ -18,8 +18,13 @@ def run(command, stopped="stopped by Ctrl-C"):
     command : str
     stopped : str
         What to say after Ctrl-C.
+    module : str, optional
+        Where it does not have the command's name.
+    **options
+        Of its `main`.
     """
     with plain_errors(command, stopped):  # a package that is imported may be missing
-        status = importlib.import_module(f".{command}", __name__).main()
+        found = importlib.import_module(f".{module or command}", __name__)
+        status = found.main(**options)
         if status is not None:
             sys.exit(status)

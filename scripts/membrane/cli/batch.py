@@ -4,28 +4,31 @@
 import difflib
 import os
 from dataclasses import fields
-from numbers import Real
 
 from yade import utils
 from yade.wrapper import Omega
 
 from ..files import shown
-from ..parameters import SailParameters
 
 
-def batch_row(**others):
+def batch_sail():
+    """The word of the column `sail` of this job's row, as of the command line; "" if none."""
+    file, line = _place()
+    word = _row(file, line).get("sail", "") if file else ""
+    return word[1:-1] if word[:1] in ("'", '"') and word[-1:] == word[:1] else word
+
+
+def batch_row(kind):
     """Parameters and name of this job of yade-batch; none outside a batch.
 
     Parameters
     ----------
-    **others
-        Further columns that the table may have, with defaults.
+    kind : class
+        Of the parameters.
 
     Returns
     -------
     parameters : dict
-        Of SailParameters.
-    others : dict
     name : str or None
         Its description.
 
@@ -34,15 +37,14 @@ def batch_row(**others):
     ValueError
         If the table has a column that nobody knows, or the row a value that cannot be read.
     """
-    place = os.environ.get("YADE_BATCH")
-    if not place:
-        return {}, others, None
-    file, _, line = place.rpartition(":")
-    defaults = {item.name: item.default for item in fields(SailParameters)}
-    row = utils.TableParamReader(file).paramDict().get(int(line), {})
-    _check_columns(file, row, {**defaults, **others})
+    file, line = _place()
+    if not file:
+        return {}, None
+    defaults = {item.name: item.default for item in fields(kind)}
+    row = _row(file, line)
+    _check_columns(file, row, {**defaults, "sail": ""})
     try:
-        utils.readParamsFromTable(noTableOk=False, **defaults, **others)
+        utils.readParamsFromTable(noTableOk=False, sail="", **defaults)
     except (NameError, SyntaxError, TypeError, ValueError, ArithmeticError) as error:
         values = " ".join(text for name, text in row.items() if name != "description")
         raise ValueError(
@@ -50,17 +52,18 @@ def batch_row(**others):
         ) from error
     from yade.params import table
 
-    for name, default in others.items():
-        value = getattr(table, name)
-        wanted = Real if isinstance(default, Real) else (str, type(None))
-        if not isinstance(value, wanted):
-            kind = "a number" if wanted is Real else "a text in quotes"
-            raise ValueError(f"{file}, line {line}: {name} = {shown(value)} must be {kind}")
-    return (
-        {name: getattr(table, name) for name in defaults},
-        {name: getattr(table, name) for name in others},
-        Omega().tags["description"],
-    )
+    return {name: getattr(table, name) for name in defaults}, Omega().tags["description"]
+
+
+def _place():
+    """File and line of this job's row; ("", "") outside a batch."""
+    file, _, line = os.environ.get("YADE_BATCH", "").rpartition(":")
+    return file, line
+
+
+def _row(file, line):
+    """Texts of a row by the names of columns."""
+    return utils.TableParamReader(file).paramDict().get(int(line), {})
 
 
 def folder_of(description):

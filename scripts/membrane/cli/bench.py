@@ -12,7 +12,7 @@ import importlib
 import sys
 
 from ..progress import announcer
-from ..run.sail import versions
+from ..run.driver import versions
 from ..study import benchmarks
 from ..study.benchmarks import lammps, results
 from ..study.benchmarks.quiet import Quiet

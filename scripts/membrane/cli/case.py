@@ -1,22 +1,24 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""One case of the paper's scene, whole or not at all, as part of a sweep or alone.
+"""One run of any sail, whole or not at all, as part of a sweep or alone.
 
-Run again after it was killed it goes on from its last checkpoint. In a batch of yade-batch the
-options are columns of the table. Exits with 0 for a case that is complete or has diverged.
+Run again after it was killed it goes on from its last checkpoint. Exits with 0 for a case that is
+complete or has diverged.
 """
 
 import argparse
+import sys
 
 from ..results.case_folder import COMPLETE
 from ..run.case import run_case
-from .batch import batch_row
-from .options import add_out, folder, from_arguments, parse
+from .options import add_out, chosen_sail, from_arguments, parse, sails_text
 
 
-def command_line():
-    """Parsed sys.argv."""
+def command_line(kind, words):
+    """Parsed words of the command line."""
     parser = argparse.ArgumentParser(
-        prog="case", description="Deploy the paper's solar sail; leave all results or none."
+        prog="case",
+        description="Deploy a solar sail; leave all results or none.",
+        epilog=sails_text(),
     )
     add_out(parser, text="folder of the case; it appears at the end")
     parser.add_argument(
@@ -29,29 +31,26 @@ def command_line():
         metavar="SECONDS",
         help="wall time between two checkpoints [s], >= 0 (default 60)",
     )
-    return parse(parser)
+    return parse(parser, kind, words)
 
 
 def main():
     """Run the case; sys.exit with one sentence if that cannot be."""
-    arguments = command_line()
-    overrides, own, _ = batch_row(
-        out=str(arguments.out or ""),
-        no_pictures=arguments.no_pictures,
-        checkpoint_every=arguments.checkpoint_every,
-    )
-    if not own["out"]:
+    kind, words = chosen_sail(sys.argv[1:])
+    arguments = command_line(kind, words)
+    if not arguments.out:
         raise ValueError("--out is missing, the folder of the case")
-    place = folder(own["out"])
     found = run_case(
-        from_arguments(arguments, overrides),
-        place,
-        own["checkpoint_every"],
-        pictures=not own["no_pictures"],
+        from_arguments(arguments, kind=kind),
+        arguments.out,
+        arguments.checkpoint_every,
+        pictures=not arguments.no_pictures,
     )
     if found["outcome"] == COMPLETE:
-        print(f"Complete: {place}")
+        print(f"Complete: {arguments.out}")
     elif found["time"] is None:
-        print(f"Diverged in the spin-up: {found['reason']}: {place}")
+        print(f"Diverged in the spin-up: {found['reason']}: {arguments.out}")
     else:
-        print(f"Diverged {found['time']:.6g} s after the release: {found['reason']}: {place}")
+        print(
+            f"Diverged {found['time']:.6g} s after the release: {found['reason']}: {arguments.out}"
+        )

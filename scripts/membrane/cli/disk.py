@@ -30,7 +30,7 @@ def vibrate(cells):
     nodes, triangles = disk_mesh(cells)
     film = scene.film(young=1e9, poisson=POISSON, density=1420.0, thickness=1e-3)
     disk = scene.add_membrane(nodes, triangles, material=film)
-    sail = scene.set_engines(disk, path="fused")
+    sail = scene.set_engines(disk, scene.SceneParameters(path="fused"))
     flat = spinning_net(nodes, disk)  # stretched by its spin
     sail.place(flat)
 

@@ -7,6 +7,7 @@ from dataclasses import fields
 from pathlib import Path
 
 from ..parameters import PARSERS, Refused, SailParameters, check_name, describe, read_values, whole
+from ..run.sails import SAILS
 
 
 def folder(text):
@@ -43,6 +44,40 @@ def add_only(parser, names, text, word="MODULE"):
     parser.add_argument("--only", nargs="+", **about)
 
 
+def chosen_sail(words, default="square"):
+    """Which kind of sail the first word of a command line means, and the words that are left.
+
+    Parameters
+    ----------
+    words : list of str
+        The first may be the name of a kind, or that of a file, which stays; or an option.
+    default : str
+        Kind where none is meant.
+
+    Returns
+    -------
+    kind : class
+        Of its parameters.
+    words : list of str
+    """
+    first = words[0] if words else "-"
+    if first in SAILS:
+        return SAILS[first].parameters, words[1:]
+    if Path(first).suffix.lower() in (".fold", ".msh"):
+        default = "sheet"
+    elif not first.startswith("-"):
+        raise Refused(
+            f"SAIL is {first!r}: must be a .fold or .msh file, or one of {', '.join(SAILS)}"
+        )
+    return SAILS[default].parameters, words
+
+
+def sails_text():
+    """What a help text tells of the kinds of sail."""
+    kinds = "; ".join(f"{name}, {kind.title}" for name, kind in SAILS.items())
+    return f"SAIL, if any, comes first: {kinds}; or the name of such a file (default square)."
+
+
 def add_arguments(parser, kind=SailParameters, several=None, defaults=None):
     """Add one option for every parameter to an argparse parser, grouped by source.
 
@@ -64,7 +99,7 @@ def add_arguments(parser, kind=SailParameters, several=None, defaults=None):
                 add_argument(group, item, chosen.get(item.name, item.default))
 
 
-def parse(parser, kind=SailParameters, *, several=None, defaults=None, root=None):
+def parse(parser, kind=SailParameters, words=None, *, several=None, defaults=None, root=None):
     """Arguments of an argparse parser with options for all parameters and one for a file of them.
 
     What is given on the command line wins over the file, which wins over `defaults`, a dict.
@@ -75,6 +110,8 @@ def parse(parser, kind=SailParameters, *, several=None, defaults=None, root=None
         Gets the options.
     kind : class
         Of the parameters.
+    words : list of str, optional
+        In place of those of sys.argv.
     several : dict, optional
         See add_arguments; the file's values of these parameters do not count.
     defaults : dict, optional
@@ -90,12 +127,12 @@ def parse(parser, kind=SailParameters, *, several=None, defaults=None, root=None
     text = "take parameters that are not given from this JSON file, as summary.json of a run"
     parser.add_argument("--parameters", type=_named, metavar="FILE", help=text)
     root = root or parser
-    arguments = root.parse_args()
+    arguments = root.parse_args(words)
     file = getattr(arguments, "parameters", None)
     if file is not None:
         values = read_values(file, kind)
         parser.set_defaults(**{n: v for n, v in values.items() if n not in (several or {})})
-        arguments = root.parse_args()
+        arguments = root.parse_args(words)
     return arguments
 
 
@@ -114,6 +151,9 @@ def add_argument(group, item, default):
     item, default
         As of `describe`.
     """
+    if item.name == "file" and not default:
+        group.add_argument("file", type=_named, help=item.metadata["text"])
+        return
     flag = "--" + item.name.replace("_", "-")
     text = describe(item, default).replace("%", "%%")
     if item.type is bool:

@@ -11,7 +11,7 @@ import sys
 import time
 
 from ..files import write_json
-from ..run.sail import versions
+from ..run.driver import versions
 from ..study.sources import REFERENCE
 from ..study.verification import table
 from .options import add_only

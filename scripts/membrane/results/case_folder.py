@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ..files import BadFile, read_object, shown
-from ..parameters import SailParameters
+from ..parameters import KINDS, SailParameters
 from .history import read_history
 from .own import LOCK
 
@@ -144,9 +144,10 @@ def check_parameters(path, place, values):
         if not (isinstance(value, (bool, str)) or _is_number(value)):
             where = f"{place}.{shown(name)[1:-1]}"
             raise BadFile(path, where, f"is {shown(value)}; must be a number or a text")
-    known = {item.name for item in fields(SailParameters)}
+    kind = KINDS.get(values.get("sail"), SailParameters)
+    known = {item.name for item in fields(kind)}
     try:
-        SailParameters(**{name: value for name, value in values.items() if name in known})
+        kind(**{name: value for name, value in values.items() if name in known})
     except ValueError as error:
         raise BadFile(path, place, str(error)) from None
 

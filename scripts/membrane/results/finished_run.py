@@ -6,10 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ..files import BadFile, read_object
+from ..files import BadFile, read_object, shown
 from ..geometry import MOUNTAIN, VALLEY
-from ..mesh import mesh_of
-from ..parameters import PatternParameters, SailParameters, from_values
+from ..parameters import KINDS, RunParameters, Spool, from_values
 from .output import list_series, read_cells, read_frame, read_history
 
 TETHER = 2  # the series' field `kind`
@@ -22,7 +21,7 @@ class FinishedRun:
     Attributes
     ----------
     folder : Path
-    parameters : SailParameters or PatternParameters
+    parameters : RunParameters
     summary : dict
         What is in summary.json.
     history : dict of (R,) float
@@ -38,10 +37,12 @@ class FinishedRun:
         With tip masses.
     spool : (float, float) or None
         Its radius and height [m].
+    has_hub : bool
+        Whether nodes turn with a hub.
     """
 
     folder: Path
-    parameters: object
+    parameters: RunParameters
     summary: dict
     history: dict
     shapes: list
@@ -51,6 +52,7 @@ class FinishedRun:
     cables: np.ndarray
     tips: np.ndarray
     spool: tuple | None
+    has_hub: bool
 
     def turned(self, times):
         """Angles (n,) [rad] since the start by which hub or sail have turned at `times` (n,) [s].
@@ -60,7 +62,7 @@ class FinishedRun:
         times, rows = np.asarray(times), self.history["time"]
         if "hub_angle" in self.history:
             angles = self.history["hub_angle"]
-        elif self.spool or self.summary["mesh"]["hub"]:
+        elif self.has_hub:
             angles = self.parameters.omega * rows
         else:
             rates = self.history["spin_rate"]
@@ -81,7 +83,7 @@ def read_run(folder):
     folder = Path(folder)
     file = folder / "summary.json"
     summary = read_object(file)
-    p = _parameters(file, summary.get("parameters"))
+    p = _parameters(file, summary)
     table = folder / "history.csv"
     history = read_history(table)
     if "time" not in history or not len(history["time"]):
@@ -96,7 +98,6 @@ def read_run(folder):
         if name not in fields:
             raise BadFile(lines[0][1], name, "is missing")
     folds, kinds = fields["fold"], fields["kind"]
-    is_paper_sail = isinstance(p, SailParameters)
     return FinishedRun(
         folder,
         p,
@@ -107,37 +108,26 @@ def read_run(folder):
         sides[folds != 0],
         np.where(folds[folds != 0] > 0, MOUNTAIN, VALLEY),
         sides[kinds == TETHER],
-        _paper_tips(file, p, nodes) if is_paper_sail else _tips(file, summary, nodes),
-        (p.spool_radius, p.spool_height) if is_paper_sail else None,
+        _nodes(file, summary, "tips", nodes),
+        (p.spool_radius, p.spool_height) if isinstance(p, Spool) else None,
+        len(_nodes(file, summary, "hub", nodes)) > 0,
     )
 
 
-def _parameters(file, values):
-    """Parameters of the paper's sail or of one made from a pattern."""
+def _parameters(file, summary):
+    """Parameters of a kind of sail."""
+    values, sail = summary.get("parameters"), summary.get("sail")
     if not isinstance(values, dict):
         raise BadFile(file, "parameters", "must be an object")
-    kind = SailParameters if "outer_width" in values else PatternParameters
-    return from_values(file, values, kind)
+    if not (isinstance(sail, str) and sail in KINDS):
+        raise BadFile(file, "sail", f"is {shown(sail)}; must be one of {', '.join(KINDS)}")
+    return from_values(file, values, KINDS[sail])
 
 
-def _paper_tips(file, p, nodes):
-    """Tips of the paper's sail, which must have so many nodes."""
-    try:
-        mesh = mesh_of(p)
-    except ValueError as error:
-        raise BadFile(file, "parameters", str(error)) from None
-    if len(mesh.nodes) != nodes:
-        raise BadFile(
-            file, "parameters", f"are of {len(mesh.nodes)} nodes; the shapes have {nodes}"
-        )
-    return mesh.tips
-
-
-def _tips(file, summary, nodes):
-    """Tips that a summary tells."""
+def _nodes(file, summary, name, nodes):
+    """Nodes (n,) of a name that a summary tells."""
     mesh = summary.get("mesh")
-    found = [mesh.get(name) for name in ("tips", "hub")] if isinstance(mesh, dict) else [None]
-    for ids in found:
-        if not isinstance(ids, list) or not all(type(i) is int and 0 <= i < nodes for i in ids):
-            raise BadFile(file, "mesh", f"must tell tips and hub, nodes below {nodes}")
-    return np.array(found[0], dtype=int)
+    ids = mesh.get(name) if isinstance(mesh, dict) else None
+    if not isinstance(ids, list) or not all(type(i) is int and 0 <= i < nodes for i in ids):
+        raise BadFile(file, f"mesh.{name}", f"must be a list of nodes, which are below {nodes}")
+    return np.array(ids, dtype=int)

@@ -1,4 +1,2 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs of sails, from a mesh to results: the paper's, those from files, cases, checkpoints."""
-
-from .. import Membrane  # noqa: F401 (without YADE it says so)
+"""One driver runs any sail of the kinds in `sails`, from a mesh to results; only it needs YADE."""

@@ -15,8 +15,9 @@ from ..files import TEMPORARY, flush, read_object, settle, write_json
 from ..results import own
 from ..results.case_folder import BEGUN, COMPLETE, DIVERGED, FAILURE, RESULT, SAVED, finished
 from ..results.case_folder import part_of, refuse_another
-from . import sail
+from . import driver
 from .checkpoint import Checkpoints
+from .last_good import Diverged
 
 
 def run_case(p, folder, checkpoint_every=60.0, pictures=True):
@@ -81,7 +82,7 @@ def finish(p, folder, checkpoints, pictures):
         What is in case.json.
     """
     part = part_of(folder)
-    about = {"parameters": p.as_dict(), "versions": sail.versions()}
+    about = {"parameters": p.as_dict(), "versions": driver.versions()}
     refuse_another(folder, p.as_dict())
     begin(part, about)
     if not (part / RESULT).exists():
@@ -103,8 +104,8 @@ def finish(p, folder, checkpoints, pictures):
 def deploy(p, part, checkpoints, pictures):
     """Run the case in `part`; returns its outcome, and of a diverged one when and why."""
     try:
-        sail.deploy(p, part, pictures, checkpoints, page=pictures)
-    except sail.Diverged as error:
+        driver.deploy(p, part, pictures, checkpoints, page=pictures)
+    except Diverged as error:
         about = {"stage": error.stage, "time": error.time, "reason": error.reason}
         return {"outcome": DIVERGED, **about}
     return {"outcome": COMPLETE}

@@ -8,43 +8,11 @@ from pathlib import Path
 import numpy as np
 from yade import wrapper as yade
 
-from .. import measures
 from ..files import write_json
 from ..geometry import side_lengths, side_rows, triangle_areas
+from ..measures import HUB, LEDGER, area_strain
 from ..results.history import read_history
 from ..results.output import HistoryWriter, VtkSeries, is_whole_series, is_whole_table
-from ..scene.hub import inertia
-
-LEDGER_UNITS = {
-    "kinetic_energy": "J",
-    "elastic_energy": "J",
-    "crease_energy": "J",
-    "gravity_energy": "J",
-    "crease_work": "J",
-    "damping_work": "J",
-    "drag_work": "J",
-    "spool_work": "J",
-    "contact_work": "J",
-    "energy_balance": "J",
-    "kink_error": "J",
-    "crease_defect": "J",
-    "angular_momentum": "kg m2/s",
-    "angular_impulse": "kg m2/s",
-    "buckled_sides": "-",
-}
-UNITS = {
-    "time": "s",
-    "deployment_rate": "-",
-    "mean_tip_radius": "m",
-    "mean_edge_middle_radius": "m",
-    "phase_difference": "rad",
-    "phase_difference_0": "rad",
-    "phase_difference_1": "rad",
-    "phase_difference_2": "rad",
-    "phase_difference_3": "rad",
-    **LEDGER_UNITS,
-}
-
 
 # Fields of the ParaView series: unit, and meaning on a side and on a triangle where it has one.
 SHAPE_FIELDS = {
@@ -72,18 +40,49 @@ SHAPE_FIELDS = {
     "fold": {"unit": "-", "side": "1 mountain, -1 valley, 0 no fold line"},
     "kind": {"unit": "-", "side": "0 film, 1 crease, 2 tether"},
 }
-HUB_UNITS = {
-    "hub_spin": "rad/s",
-    "hub_angle": "rad",
-    "hub_energy": "J",
-    "hub_torque": "N m",
-    "inertia": "kg m2",
-}
-
-
 TABLE, SHAPES = "history.csv", "shapes"  # in the output folder
 
 THIRDS = np.full(3, 1 / 3)  # of the three sides of a triangle
+
+
+class Instant:
+    """The last step, in which forces acted at `time` [s] after the release, as Measures see it.
+
+    Attributes
+    ----------
+    time : float
+        [s]
+    x : (N, 3) float
+        Positions of the nodes [m].
+    mesh, tips
+        Of the Sail.
+    ledger, hub
+        Engines; hub is None where it is driven.
+    turned : float
+        Angle of the hub, or what it is driven by, since the release [rad].
+    masses : (N,) float
+        [kg]
+    sides : (E, 2) int; critical : (E,) float; rest_areas : (T,) float
+        Of the membrane: nodes, critical lengths [m], areas at rest [m2].
+    kept : dict
+        What measures keep from row to row; it goes into JSON.
+    """
+
+    def __init__(self, recorder, time):
+        sail, built = recorder.sail, recorder.built
+        self.time, self.x = time, built.last_positions()
+        self.mesh, self.tips, self.kept = sail.mesh, sail.tips, recorder.kept
+        self.ledger, self.hub = built.ledger, built.hub
+        self.turned = _angle(built.hub) if built.hub else recorder.spin_rate * time
+        self.masses, self.rest_areas = recorder.masses, recorder.rest_areas
+        self.sides, self.critical = recorder.sides, recorder.critical
+        self._once = {}
+
+    def once(self, function):
+        """What a function makes of this instant, computed once."""
+        if function not in self._once:
+            self._once[function] = function(self)
+        return self._once[function]
 
 
 class Recorder:
@@ -93,8 +92,10 @@ class Recorder:
     ----------
     folder : path
         Output folder.
-    mesh : SailMesh
-    sail : MembraneScene
+    sail : Sail
+    built : MembraneScene
+    measures : tuple of Measure
+        Of the kind of sail.
     spin_rate : float
         Of the spool [rad/s].
     state : dict, optional
@@ -108,36 +109,34 @@ class Recorder:
         Their times [s].
     """
 
-    units = UNITS
-
-    def __init__(self, folder, mesh, sail, spin_rate, state=None):
-        self.mesh, self.sail, self.spin_rate = mesh, sail, spin_rate
-        if sail.hub:
-            self.units = {**self.units, **HUB_UNITS}
-        state = state or {"history": None, "film": None, "first_lead": None, "phases": [0.0] * 4}
+    def __init__(self, folder, sail, built, measures, spin_rate, state=None):
+        self.sail, self.built, self.spin_rate = sail, built, spin_rate
+        self.measures = (*measures, *LEDGER, *(HUB if built.hub else ()))
+        units = {"time": "s", **{measure.name: measure.unit for measure in self.measures}}
+        state = state or {"history": None, "film": None, "kept": {}}
+        self.kept = state["kept"]
         table, shapes = Path(folder) / TABLE, Path(folder) / SHAPES
-        self._history = HistoryWriter(table, self.units, state["history"])
-        membrane = sail.membrane
-        self._sides = np.array(membrane.sides)
+        self._history = HistoryWriter(table, units, state["history"])
+        membrane, mesh = built.membrane, sail.mesh
+        self.masses = built.masses()
+        self.sides = np.array(membrane.sides)
+        self.critical = np.array(membrane.criticalLengths)
+        self.rest_areas = triangle_areas(mesh.nodes, mesh.triangles)
         self._rest = np.array(membrane.restLengths)
-        self._critical = np.array(membrane.criticalLengths)
         self._kinds = np.array(membrane.sideKinds, dtype=np.int8)
         creases = np.array(membrane.creases, dtype=int).reshape(-1, 2)
-        self._crease_rows = side_rows(self._sides, creases)
-        self._signs = np.zeros(len(self._sides), dtype=np.int8)
+        self._crease_rows = side_rows(self.sides, creases)
+        self._signs = np.zeros(len(self.sides), dtype=np.int8)
         self._signs[self._crease_rows] = membrane.creaseSigns
         ahead = np.roll(mesh.triangles, -1, axis=1)
         pairs = np.stack([mesh.triangles, ahead], axis=-1).reshape(-1, 2)
-        self._triangle_sides = side_rows(self._sides, pairs).reshape(-1, 3)
-        self._rest_areas = triangle_areas(mesh.nodes, mesh.triangles)
+        self._triangle_sides = side_rows(self.sides, pairs).reshape(-1, 3)
         self.frame_times = list(state["film"]["times"]) if state["film"] else []
         self._film = VtkSeries(shapes, "film", mesh.triangles, self.frame_times)
-        self._lines = VtkSeries(shapes, "sides", self._sides, self.frame_times)
+        self._lines = VtkSeries(shapes, "sides", self.sides, self.frame_times)
         write_json(shapes / "fields.json", SHAPE_FIELDS)
         self._columns = {name: array("d", values) for name, values in read_history(table).items()}
         self.frames = Frames(self._film)
-        # Of the tips against the spool [rad]: at the first row, where its time is 0, and since.
-        self._first_lead, self._phases = state["first_lead"], np.array(state["phases"])
 
     def state(self):
         """What a Recorder needs to continue this one, ready for JSON; it is on the disk then."""
@@ -145,82 +144,34 @@ class Recorder:
             "history": self._history.state(),
             "film": self._film.state(),
             "sides": self._lines.state(),
-            "first_lead": self._first_lead,
-            "phases": self._phases.tolist(),
+            "kept": self.kept,
         }
 
     def history(self, time):
         """Append the measures of the last step, whose forces acted `time` [s] after the release."""
-        x = self.sail.last_positions()
-        row = {"time": time, **self.measured(time, x), **self._booked(x)}
+        at = Instant(self, time)
+        row = {"time": time, **{measure.name: measure.of(at) for measure in self.measures}}
         self._history.write(row)
         for name, column in self._columns.items():
             column.append(row[name])
         return row
 
-    def measured(self, time, x):
-        """Measures of the shape `x` (N, 3) [m] at `time` [s] by name."""
-        hub = self.sail.hub
-        turned = _angle(hub) if hub else self.spin_rate * time
-        lead = measures.tip_azimuths(self.mesh, x) - turned
-        if self._first_lead is None:
-            self._first_lead = lead.tolist()
-        self._phases = phases = measures.nearest_turn(lead - self._first_lead, self._phases)
-        return {
-            "deployment_rate": measures.deployment_rate(self.mesh, x),
-            "mean_tip_radius": measures.mean_tip_radius(self.mesh, x),
-            "mean_edge_middle_radius": measures.mean_edge_middle_radius(self.mesh, x),
-            "phase_difference": float(phases.mean()),
-            **{f"phase_difference_{i}": phases[i] for i in range(4)},
-        }
-
-    def _booked(self, x):
-        """What the ledger holds, and the number of buckled sides, by name."""
-        length = side_lengths(x, self._sides)
-        ledger = self.sail.ledger
-        crease = ledger.crease  # computed at each call
-        return {
-            "kinetic_energy": ledger.kinetic,
-            "elastic_energy": ledger.elastic,
-            "crease_energy": crease,
-            "gravity_energy": ledger.potential,
-            "crease_work": ledger.creaseWork,
-            "damping_work": ledger.dampingWork,
-            "drag_work": ledger.dragWork,
-            "spool_work": ledger.drivenWork,
-            "contact_work": ledger.contactWork,
-            "energy_balance": ledger.balance,
-            "kink_error": ledger.kinkError,
-            "crease_defect": crease - ledger.initialCrease + ledger.creaseWork,
-            "angular_momentum": ledger.angularMomentum,
-            "angular_impulse": ledger.angularImpulse,
-            "buckled_sides": int(np.sum(length < self._critical)),
-            **self._hub(x),
-        }
-
-    def _hub(self, x):
-        """The free hub in the last step, with nodes at `x`; nothing if it is driven."""
-        hub = self.sail.hub
-        if not hub:
-            return {}
-        return {
-            "hub_spin": 0.5 * (hub.spinBefore + hub.spin),
-            "hub_angle": _angle(hub),
-            "hub_energy": hub.kinetic,
-            "hub_torque": hub.torque,
-            "inertia": inertia(self.sail, x),
-        }
+    def told(self, name, row):
+        """One of the measures of a row, in words."""
+        (m,) = [measure for measure in self.measures if measure.name == name]
+        unit, factor = m.shown or (m.unit, 1.0)
+        return f"{m.label} {factor * row[name]:.3f}{'' if unit == '-' else ' ' + unit}"
 
     def shape(self, time):
         """Append the shape of the last step, at `time` [s], to the ParaView series."""
-        x = self.sail.last_positions()
-        length = side_lengths(x, self._sides)
-        angle = np.full(len(self._sides), np.pi)
-        angle[self._crease_rows] = self.sail.forces.creaseAngles(x)
+        x = self.built.last_positions()
+        length = side_lengths(x, self.sides)
+        angle = np.full(len(self.sides), np.pi)
+        angle[self._crease_rows] = self.built.forces.creaseAngles(x)
         fields = {
             "side_strain": length / self._rest - 1,
-            "tension": np.array(self.sail.membrane.tensions(x)),
-            "buckled": (length < self._critical).astype(np.int8),
+            "tension": np.array(self.built.membrane.tensions(x)),
+            "buckled": (length < self.critical).astype(np.int8),
             "crease_angle": angle,
         }
         lines = {**fields, "fold": self._signs, "kind": self._kinds}
@@ -234,7 +185,7 @@ class Recorder:
         angles = three["crease_angle"]
         most = np.argmax(np.abs(angles - np.pi), axis=1)
         return {
-            "area_strain": measures.area_strain(self.mesh, x, self._rest_areas),
+            "area_strain": area_strain(self.sail.mesh, x, self.rest_areas),
             **{name: three[name] @ THIRDS for name in ("side_strain", "tension", "buckled")},
             "crease_angle": angles[np.arange(len(angles)), most],
         }

@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from yade import wrapper as yade
 
+from ..parameters import SceneParameters, attributes
 from ..progress import warn
 from . import contacts, hub, spool
 
-PATHS = ("law2", "fused")
 NODE_MASK = 1 << 29  # of nodes of a MembraneIntegrator
 # What NewtonIntegrator moves: all but facets of the spool and nodes of a MembraneIntegrator.
 INTEGRATED = NODE_MASK - 1 - spool.SPOOL_MASK
@@ -89,64 +89,25 @@ class MembraneScene:
             bodies[ids[node]].state.blockedDOFs = "xyzXYZ" if held else "XYZ"
 
 
-def set_engines(
-    membrane,
-    *,
-    path="law2",
-    exchange_period=1,
-    driven=(),
-    touching=(),
-    omega=0.0,
-    hub_inertia=None,
-    gravity=(0.0, 0.0, 0.0),
-    beta=0.0,
-    gamma=100.0,
-    theta0=0.0,
-    crease_law="paper",
-    zeta=0.0,
-    air_density=0.0,
-    force_time_step=False,
-    energy_tolerance=0.1,
-):
+def set_engines(membrane, parameters=SceneParameters(), *, driven=(), touching=()):
     """Set O.engines to those that a membrane needs; each that a scene does without is left out.
 
     Parameters
     ----------
     membrane : Membrane
-    path : "law2" or "fused"
-        "law2": sides are interactions, nodes move by NewtonIntegrator; the reference. "fused": the
-        same physics by MembraneIntegrator, several times faster; removes the membrane's
-        interactions.
-    exchange_period : int
-        Of path "fused": steps between two updates of the bodies that touch nothing, >= 1; see
-        MembraneIntegrator.exchangePeriod. The ledger's energies are brought up to date as seldom,
-        but at least every LEDGER_PERIOD steps, for the watch.
+    parameters : SceneParameters or RunParameters
+        Of creases, air, hub and engines, and the damping. On path "law2" sides are interactions,
+        nodes move by NewtonIntegrator: the reference. On path "fused" a MembraneIntegrator does the
+        same, several times faster, and the membrane's interactions are removed; the ledger's
+        energies are brought up to date as seldom as bodies, but at least every LEDGER_PERIOD
+        steps, for the watch.
     driven : sequence of int
-        Ids of bodies that turn about z: spool facets, ends of tethers.
+        Ids of bodies that turn about z: spool facets, ends of tethers. With hub_inertia > 0 they
+        belong to a hub that turns freely, a FreeHub, and begins at omega.
     touching : sequence of int
         Ids of the membrane's bodies that touch other bodies: any sphere, facet, wall or box of
         material FrictMat, now or later, by YADE's usual contact. Nodes do not touch one another.
         Empty: no collider at all.
-    omega : float
-        Rate at which the driven bodies turn [rad/s].
-    hub_inertia : float, optional
-        The driven bodies belong to a hub of this moment of inertia about z [kg m2] that turns
-        freely: a FreeHub; `omega` is its spin when it begins. Default: they are driven at `omega`.
-    gravity : 3 floats
-        [m/s2].
-    beta, gamma, zeta : float
-        Stiffness of the creases, their penalty where faces have passed through each other, and
-        damping ratio [-], >= 0; 0: none.
-    theta0 : float
-        Natural angle of the creases [rad], in [0, pi].
-    crease_law : "paper" or "conservative"
-        Equation (7) as printed, or the gradient of an energy.
-    air_density : float
-        [kg/m3], >= 0; 0: no drag.
-    force_time_step : bool
-        Run even above the critical time step.
-    energy_tolerance : float or None
-        Energy from nowhere, over all energy, that stops a run [-], > 0; None: no MembraneWatch.
 
     Returns
     -------
@@ -155,100 +116,115 @@ def set_engines(
     Raises
     ------
     ValueError
-        Naming the argument, if one is out of range, or the body that could not be touched.
+        Naming the body that is no node, or could not be touched.
     """
-    if path not in PATHS:
-        raise ValueError(f"set_engines: path = {path!r} must be one of {', '.join(PATHS)}")
-    fused = path == "fused"
-    scene = yade.Omega()
-    own = {"exchangePeriod": exchange_period} if fused else {}
-    forces = getattr(yade, "MembraneIntegrator" if fused else "MembraneForceEngine")(
-        membrane=membrane,
-        beta=beta,
-        gamma=gamma,
-        theta0=theta0,
-        creaseLaw=crease_law,
-        zeta=zeta,
-        airDensity=air_density,
-        forceTimeStep=force_time_step,
-        **own,
-    )
-    geometry, physics, laws, collider = [], [], [], []
-    if touching or not fused:
-        # Also where the sides are no interactions: should they become some, YADE would end for want
-        # of it, before the forces engine can refuse them.
-        laws = [yade.Law2_MembraneGeom_MembranePhys_Buckling()]
+    p, scene = parameters, yade.Omega()
     others = []
     if len(scene.bodies) > len(membrane.bodyIds):
         others = sorted({body.id for body in scene.bodies}.difference(membrane.bodyIds))
-    if fused:
-        membrane.removeInteractions()
-    else:
-        if not membrane.hasInteractions:
-            membrane.addInteractions()
-        for body in (scene.bodies[i] for i in membrane.bodyIds):
-            if body.mask == NODE_MASK:  # a MembraneIntegrator had them
-                body.mask = 1
-        geometry = [yade.Ig2_MembraneNode_MembraneNode_MembraneGeom()]
-        physics = [yade.Ip2_MembraneMat_MembraneMat_MembranePhys(membrane=membrane)]
-    if not set(touching).issubset(membrane.bodyIds):
-        stranger = min(set(touching).difference(membrane.bodyIds))
-        raise ValueError(f"set_engines: touching: body #{stranger} is no node of the membrane")
-    untouched = [i for i in others if i not in driven and scene.bodies[i].bounded]
-    if untouched and not touching:
-        warn(f"nothing of the membrane touches body #{untouched[0]}: name nodes in `touching`")
+    _check_touching(membrane, touching, [i for i in others if i not in driven])
+    _settle_sides(membrane, p.path)
     if touching:
         contacts.check(others, INTEGRATED)
         for body in (scene.bodies[i] for i in touching):
             body.bounded, body.mask = True, TOUCHING_MASK
-        collider = [contacts.collider(TOUCHING_MASK)]
-        node_pairs = yade.Ig2_MembraneNode_MembraneNode_MembraneGeom()
-        geometry = [*contacts.geometry(), node_pairs]
-        physics.append(yade.Ip2_FrictMat_FrictMat_FrictPhys())
-        # A facet's torque must be that about its place: a FreeHub takes it.
-        laws.append(yade.Law2_ScGeom_FrictPhys_CundallStrack(sphericalBodies=False))
+
+    fused = p.path == "fused"
+    forces = _forces(membrane, p)
+    gravity = (0, 0, -p.gravity)
     facets = [i for i in driven if isinstance(scene.bodies[i].shape, yade.Facet)]
-    turning = spool.turning(facets, touching, omega)
+    turning = spool.turning(facets, touching, p.omega)
     turned = sorted(set(driven).difference(facets))
-    free_hub = []
-    if hub_inertia is not None:
-        free_hub = [hub.add(forces, turned, turning, hub_inertia, omega)]
+    free = None
+    if p.hub_inertia > 0:
+        free = hub.add(forces, turned, turning, p.hub_inertia, p.omega)
         turned = []  # the hub turns them
-    rotation = yade.RotationEngine(
-        ids=turned,
+    loop = _interaction_loop(membrane, fused, touching)
+    newton = yade.NewtonIntegrator(damping=0, gravity=gravity, mask=INTEGRATED)
+    # With no other body that moves, a fused membrane needs none of YADE's loops over bodies.
+    newton.dead = fused and not set(others).difference(facets)
+    period = min(p.exchange_period, LEDGER_PERIOD) if fused else 1
+    ledger = yade.MembraneLedger(forces=forces, gravity=gravity, period=period)
+    watch = None
+    if p.energy_tolerance > 0:
+        watch = yade.MembraneWatch(ledger=ledger, tolerance=p.energy_tolerance)
+    made = MembraneScene(
+        membrane=membrane,
+        forces=forces,
+        field=yade.CentrifugalField(membrane=membrane, omega=p.omega, dead=True),
+        rotation=_rotation(turned, p.omega),
+        spool=turning,
+        newton=newton,
+        ledger=ledger,
+        watch=watch,
+        resetter=yade.ForceResetter(dead=newton.dead and not loop),
+        driven=list(driven),
+        hub=free,
+    )
+    collider = contacts.collider(TOUCHING_MASK) if touching else None
+    first = made.resetter, turning, collider, made.rotation, loop, made.field
+    scene.engines = [e for e in (*first, forces, newton, free, ledger, watch) if e is not None]
+    return made
+
+
+def _check_touching(membrane, touching, others):
+    """Refuse bodies that are no nodes; tell of `others` that nothing would touch."""
+    strangers = set(touching).difference(membrane.bodyIds)
+    if strangers:
+        raise ValueError(
+            f"set_engines: touching: body #{min(strangers)} is no node of the membrane"
+        )
+    untouched = [i for i in others if yade.Omega().bodies[i].bounded]
+    if untouched and not touching:
+        warn(f"nothing of the membrane touches body #{untouched[0]}: name nodes in `touching`")
+
+
+def _settle_sides(membrane, path):
+    """Sides are interactions on path "law2" only."""
+    if path == "fused":
+        membrane.removeInteractions()
+        return
+    if not membrane.hasInteractions:
+        membrane.addInteractions()
+    for body in (yade.Omega().bodies[i] for i in membrane.bodyIds):
+        if body.mask == NODE_MASK:  # a MembraneIntegrator had them
+            body.mask = 1
+
+
+def _forces(membrane, p):
+    """The forces engine of a path, with the attributes that parameters `p` set."""
+    kinds = ["MembraneForceEngine", *(["MembraneIntegrator"] if p.path == "fused" else [])]
+    values = {name: value for kind in kinds for name, value in attributes(kind, p).items()}
+    return getattr(yade, kinds[-1])(membrane=membrane, **values)
+
+
+def _rotation(bodies, omega):
+    """Engine that turns bodies about z."""
+    return yade.RotationEngine(
+        ids=bodies,
         angularVelocity=omega,
         rotationAxis=(0, 0, 1),
         rotateAroundZero=True,
         zeroPoint=(0, 0, 0),
-        dead=not turned,
+        dead=not bodies,
     )
-    centrifugal = yade.CentrifugalField(membrane=membrane, omega=omega, dead=True)
-    newton = yade.NewtonIntegrator(damping=0, gravity=gravity, mask=INTEGRATED)
-    ledger = yade.MembraneLedger(
-        forces=forces, gravity=gravity, period=min(exchange_period, LEDGER_PERIOD) if fused else 1
-    )
-    # With no other body that moves, a fused membrane needs none of YADE's loops over bodies.
-    newton.dead = fused and not set(others).difference(facets)
-    resetter = yade.ForceResetter(dead=newton.dead and not laws)
-    watch = []
-    if energy_tolerance is not None:
-        watch = [yade.MembraneWatch(ledger=ledger, tolerance=energy_tolerance)]
-    scene.engines = [
-        resetter,
-        turning,
-        *collider,
-        rotation,
-        *([yade.InteractionLoop(geometry, physics, laws)] if laws else []),
-        centrifugal,
-        forces,
-        newton,
-        *free_hub,
-        ledger,
-        *watch,
-    ]
-    moving = membrane, forces, centrifugal, rotation, turning, newton, ledger
-    others = watch[0] if watch else None, resetter, list(driven), free_hub[0] if free_hub else None
-    return MembraneScene(*moving, *others)
+
+
+def _interaction_loop(membrane, fused, touching):
+    """YADE's loop over sides and contacts; None where there are neither."""
+    if fused and not touching:
+        return None
+    # Also where the sides are no interactions: should they become some, YADE would end for want of
+    # these, before the forces engine can refuse them.
+    geometry = [yade.Ig2_MembraneNode_MembraneNode_MembraneGeom()]
+    laws = [yade.Law2_MembraneGeom_MembranePhys_Buckling()]
+    physics = [] if fused else [yade.Ip2_MembraneMat_MembraneMat_MembranePhys(membrane=membrane)]
+    if touching:
+        geometry = [*contacts.geometry(), *geometry]
+        physics.append(yade.Ip2_FrictMat_FrictMat_FrictPhys())
+        # A facet's torque must be that about its place: a FreeHub takes it.
+        laws.append(yade.Law2_ScGeom_FrictPhys_CundallStrack(sphericalBodies=False))
+    return yade.InteractionLoop(geometry, physics, laws)
 
 
 def renew_collider():
@@ -275,11 +251,19 @@ def loaded():
     rotation, turning = found["RotationEngine"], found["SpoolRotation"]
     free = found.get("FreeHub")
     on_hub = [forces.membrane.bodyIds[node] for node in free.nodes] if free else []
-    newton, ledger = found["NewtonIntegrator"], found["MembraneLedger"]
-    moving = forces.membrane, forces, found["CentrifugalField"], rotation, turning, newton, ledger
-    driven = [*turning.ids, *rotation.ids, *on_hub]
-    others = found.get("MembraneWatch"), found["ForceResetter"], driven, free
-    return MembraneScene(*moving, *others)
+    return MembraneScene(
+        membrane=forces.membrane,
+        forces=forces,
+        field=found["CentrifugalField"],
+        rotation=rotation,
+        spool=turning,
+        newton=found["NewtonIntegrator"],
+        ledger=found["MembraneLedger"],
+        watch=found.get("MembraneWatch"),
+        resetter=found["ForceResetter"],
+        driven=[*turning.ids, *rotation.ids, *on_hub],
+        hub=free,
+    )
 
 
 def sort_interactions():

@@ -208,5 +208,6 @@ def release(sail, omega, held):
     if sail.hub:
         hub.release(sail.hub, omega, forces)
     else:
-        sail.rotation.dead = False
-    sail.spool.dead = sail.ledger.dead = False
+        sail.rotation.dead = not sail.rotation.ids
+    sail.spool.dead = not sail.spool.ids
+    sail.ledger.dead = False

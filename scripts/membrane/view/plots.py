@@ -28,59 +28,42 @@ def save(figure, path, **options):
         figure.savefig(part, **{"format": Path(path).suffix[1:], "dpi": DPI, **options})
 
 
-def plot_deployment(history, path):
-    """Deployment rate and phase difference over time, one above the other.
-
-    Parameters
-    ----------
-    history : mapping of (S,) float
-        Columns `time` [s], `deployment_rate` [-], `phase_difference` [rad] (mean of the tips)
-        and `phase_difference_0` ... `phase_difference_3` [rad].
-    path : path
-        Picture to write; its ending gives the format.
-    """
-    figure = Figure(figsize=(7, 6), layout="constrained")
-    rate, phase = figure.subplots(2, 1, sharex=True)
-    time = history["time"]
-    rate.plot(time, history["deployment_rate"], color="C0")
-    rate.set(ylabel="deployment rate [-]", ylim=(0, None))
-    for tip in range(4):
-        label = "single tips" if tip == 0 else None
-        tip_phase = np.degrees(history[f"phase_difference_{tip}"])
-        phase.plot(time, tip_phase, color="C1", linewidth=0.6, alpha=0.6, label=label)
-    phase.plot(time, np.degrees(history["phase_difference"]), color="C0", label="mean")
-    phase.set(xlabel="time [s]", ylabel="phase difference [deg]")
-    phase.legend(frameon=False)
-    for axes in (rate, phase):
-        axes.grid(alpha=0.3)
-        axes.margins(x=0)
-    save(figure, path)
-
-
-def plot_history(history, columns, path):
-    """Some columns of a history over time, one above the other.
+def plot_history(history, plots, path):
+    """Plots of a history over time, one above the other.
 
     Parameters
     ----------
     history : mapping of (S,) float
         With a column `time` [s].
-    columns : dict of str
-        Label of the axis by name of the column.
+    plots : sequence of measures.Plot
     path : path
-        Picture to write.
+        Picture to write; its ending gives the format.
     """
-    figure = Figure(figsize=(7, 1 + 1.7 * len(columns)), layout="constrained")
-    every = figure.subplots(len(columns), 1, sharex=True, squeeze=False)[:, 0]
-    for axes, (name, label) in zip(every, columns.items()):
-        axes.plot(history["time"], history[name], color="C0")
-        axes.set(ylabel=label)
-        if np.min(history[name]) >= 0:
-            axes.set(ylim=(0, 1.05 * np.max(history[name]) or None))
-        axes.grid(alpha=0.3)
-        axes.margins(x=0)
+    height = max(1 + 1.7 * len(plots), 6)
+    figure = Figure(figsize=(7, height), layout="constrained")
+    every = figure.subplots(len(plots), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, plot in zip(every, plots):
+        _draw_lines(axes, history, plot)
     every[-1].set(xlabel="time [s]")
     figure.align_ylabels(every)
     save(figure, path)
+
+
+def _draw_lines(axes, history, plot):
+    """Draw a measures.Plot; measures that are one of several alike are thin, and named once."""
+    minor = [m for m in plot.lines if m.minor]
+    for m in sorted(plot.lines, key=lambda m: not m.minor):
+        style = {"color": "C1", "linewidth": 0.6, "alpha": 0.6} if m.minor else {}
+        label = m.label if m not in minor[1:] else None
+        axes.plot(history["time"], plot.factor * history[m.name], label=label, **style)
+    axes.set(ylabel=f"{plot.title}\n[{plot.unit}]")
+    lowest = min(np.min(history[m.name]) for m in plot.lines)
+    if lowest >= 0:
+        axes.set(ylim=(0, None))
+    if len(plot.lines) > 1:
+        axes.legend(frameon=False)
+    axes.grid(alpha=0.3)
+    axes.margins(x=0)
 
 
 def plot_shapes(frames, mesh, path, times):

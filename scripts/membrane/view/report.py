@@ -14,6 +14,7 @@ import numpy as np
 
 from ..files import BadFile, replace_text
 from ..geometry import crease_angles
+from ..measures import EVERY, in_plots, table
 from ..results import own
 from ..results.finished_run import read_run
 from ..results.output import read_frame
@@ -32,59 +33,7 @@ FIELDS = (
     ("crease_angle", "crease angle", "deg", 180 / np.pi, "0 folded, 180 flat or no fold line"),
 )
 
-RPM = 30 / np.pi  # of 1 rad/s
-
-# Plots: label, unit, factor from SI, lines as (column of history.csv, label). A run has those of
-# whose columns its history.csv has the first.
-CURVES = (
-    ("deployment rate", "-", 1.0, [("deployment_rate", "rate")]),
-    ("area over flat area", "-", 1.0, [("projected_area", "projected")]),
-    ("hub", "rpm", RPM, [("hub_spin", "spin")]),
-    (
-        "phase difference",
-        "deg",
-        180 / np.pi,
-        [
-            ("phase_difference", "mean"),
-            *[(f"phase_difference_{tip}", f"tip {tip}") for tip in range(4)],
-        ],
-    ),
-    ("crease angle", "deg", 180 / np.pi, [("mean_crease_angle", "mean")]),
-    ("spin", "rad/s", 1.0, [("spin_rate", "mean of the sail")]),
-    (
-        "energy",
-        "J",
-        1.0,
-        [
-            ("spool_work", "spool work"),
-            ("kinetic_energy", "kinetic"),
-            ("elastic_energy", "elastic"),
-            ("crease_energy", "creases"),
-            ("damping_work", "damping work"),
-        ],
-    ),
-)
 MILLI = {"J": ("mJ", 1e3)}  # units for what stays below 1
-
-# Measures of summary.json: name, label, unit, factor from SI. A run has some of them.
-MEASURES = (
-    ("final_deployment_rate", "deployment rate at the end", "-", 1.0),
-    ("largest_deployment_rate", "largest deployment rate", "-", 1.0),
-    ("time_of_rate_0.9", "deployment rate above 0.9 from", "s", 1.0),
-    ("largest_lag", "largest lag of the tips", "deg", 180 / np.pi),
-    ("time_of_largest_lag", "time of the largest lag", "s", 1.0),
-    ("return_time", "tips back at the spool's angle", "s", 1.0),
-    ("spin_before", "spin of the hub before", "rpm", RPM),
-    ("spin_after", "spin of the hub after", "rpm", RPM),
-    ("spin_after_by_momentum", "after, by angular momentum", "rpm", RPM),
-    ("final_projected_area", "area over flat area at the end", "-", 1.0),
-    ("largest_projected_area", "largest area over flat area", "-", 1.0),
-    ("time_of_area_0.9", "area above 0.9 from", "s", 1.0),
-    ("final_spin_rate", "spin at the end", "rad/s", 1.0),
-    ("final_mean_crease_angle", "mean crease angle at the end", "deg", 180 / np.pi),
-    ("largest_spool_work", "largest work of the spool", "mJ", 1e3),
-    ("largest_energy_imbalance", "largest energy imbalance", "mJ", 1e3),
-)
 
 
 class NoViewer(RuntimeError):
@@ -225,34 +174,21 @@ def _curves(history):
         return [float(f"{value:.6g}") for value in values]
 
     curves = []
-    for label, unit, factor, lines in CURVES:
-        if lines[0][0] not in history:
-            continue
-        # What is 0 throughout, as the spool's work where there is none, would hide other lines.
-        told = [line for line in lines if line[0] in history and history[line[0]].any()]
-        lines = told or lines[:1]
-        if unit in MILLI and max(np.abs(history[column]).max() for column, _ in lines) < 1:
+    for title, unit, factor, lines in in_plots(EVERY, history):
+        if unit in MILLI and max(np.abs(history[m.name]).max() for m in lines) < 1:
             unit, factor = MILLI[unit]
         drawn = [
-            {
-                "label": name,
-                "minor": name.startswith("tip "),
-                "values": shorten(factor * history[column]),
-            }
-            for column, name in lines
+            {"label": m.label, "minor": m.minor, "values": shorten(factor * history[m.name])}
+            for m in lines
         ]
-        curves.append({"label": label, "unit": unit, "lines": drawn})
+        curves.append({"label": title, "unit": unit, "lines": drawn})
     return {"historyTimes": shorten(history["time"]), "curves": curves}
 
 
 def _measures(summary, nodes):
     """Table of the main measures."""
-    rows = [["nodes", str(nodes), "-"]]
     found = summary.get("measures")
-    for name, label, unit, factor in MEASURES:
-        value = found.get(name, False) if isinstance(found, dict) else False
-        if value is None or type(value) in (int, float):
-            rows.append([label, "never" if value is None else f"{factor * value:.4g}", unit])
+    rows = [["nodes", str(nodes), "-"], *table(found if isinstance(found, dict) else {})]
     return {"title": "Measures", "head": ["measure", "value", "unit"], "rows": rows}
 
 

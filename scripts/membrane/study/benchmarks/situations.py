@@ -89,13 +89,13 @@ def sheet(side, path, everything, exchange_period=1):
         interactions=path == "law2",
     )
     added = time.process_time() - start
-    built = scene.set_engines(
-        membrane,
+    p = scene.SceneParameters(
         path=path,
         exchange_period=exchange_period,
-        energy_tolerance=None,
+        energy_tolerance=0,
         **(EVERYTHING if everything else DAMPING),
     )
+    built = scene.set_engines(membrane, p)
     built.ledger.dead = True
     yade.Omega().dt = SHARE * built.forces.criticalTimeStep()
     scene.advance(1)
@@ -149,7 +149,7 @@ def springs(refine):
     membrane = scene.add_membrane(
         mesh.nodes, mesh.triangles, mesh.creases, mesh.crease_signs, mesh.cables
     )
-    scene.set_engines(membrane, force_time_step=True)
+    scene.set_engines(membrane, scene.SceneParameters(force_time_step=True))
     omega = yade.Omega()
     loop = [e for e in omega.engines if isinstance(e, yade.InteractionLoop)]
     omega.engines = [yade.ForceResetter(), *loop]

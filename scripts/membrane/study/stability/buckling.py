@@ -15,7 +15,7 @@ buckled.
 import numpy as np
 from membrane import scene
 from membrane.parameters import SailParameters
-from membrane.run import sail
+from membrane.run import driver
 
 from .common import Model, O, figure, folder, grid, save, write_table
 
@@ -29,10 +29,10 @@ def early_deployment(alpha, step, seconds):
     """Largest imbalance over the kinetic energy, that energy [J], and step / estimate."""
     O.reset()
     p = SailParameters(alpha=alpha, alpha_crease=alpha)
-    mesh, built = sail.build(p)
+    sail, built = driver.build(p)
     estimate = built.forces.criticalTimeStep()
     O.dt = step
-    scene.release(built, p.omega, mesh.guide_nodes.ravel())
+    scene.release(built, p.omega, sail.held)
     largest, error = 0.0, 0.0
     try:
         for _ in range(10):
@@ -54,7 +54,7 @@ def snaps(share, count):
         pointMasses=[0, 0, 0, 0, MASS],
         cableStiffness=TETHER_EA,
         cableDensity=TETHER_DENSITY,
-        gravity=(0, 0, -GRAVITY),
+        gravity=GRAVITY,
     )
     model.states[0].blockedDOFs = "xyzXYZ"
     lifted = nodes.copy()

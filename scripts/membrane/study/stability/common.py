@@ -33,12 +33,12 @@ class Model:
         [kg].
     """
 
-    def __init__(self, nodes, triangles=(), *, engine=None, gravity=(0.0, 0.0, 0.0), **options):
+    def __init__(self, nodes, triangles=(), *, engine=None, gravity=0.0, **options):
         O.reset()
         self.rest = np.array(nodes, dtype=float)
         self.net = scene.add_membrane(self.rest, triangles, **options)
-        settings = {"force_time_step": True, "energy_tolerance": None, **(engine or {})}
-        built = scene.set_engines(self.net, gravity=gravity, **settings)
+        about = {"force_time_step": True, "energy_tolerance": 0, **(engine or {})}
+        built = scene.set_engines(self.net, scene.SceneParameters(gravity=gravity, **about))
         self.sail, self.forces, self.ledger = built, built.forces, built.ledger
         self.ledger.dead = True
         self.states = [O.bodies[i].state for i in self.net.bodyIds]

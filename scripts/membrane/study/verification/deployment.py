@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from membrane import measures, scene
 from membrane.parameters import TABLE_2_DURATION, SailParameters
-from membrane.run import sail
+from membrane.run import driver
 from membrane.view import plots
 from yade import wrapper as yade
 
@@ -91,10 +91,10 @@ class Deployment:
 @cache
 def _equilibrium(p, seed):
     yade.Omega().reset()
-    _, built = sail.build(p)
+    _, built = driver.build(p)
     if seed:
         built.place(perturbed(built.positions(), seed))
-    sail.spin_up(built, p)
+    driver.spin_up(built, p)
     return built.positions()
 
 
@@ -112,17 +112,15 @@ def begin(p, positions, ledger=True):
 
     Returns
     -------
-    mesh : SailMesh
-    sail : MembraneScene
+    sail : Sail
+    built : MembraneScene
     """
-    omega = yade.Omega()
-    omega.reset()
-    mesh, built = sail.build(p)
+    yade.Omega().reset()
+    sail, built = driver.build(p)
     built.place(positions)
-    omega.dt = p.dt
-    scene.release(built, p.omega, mesh.guide_nodes.ravel())
+    driver.release(sail, built, p.omega, p.dt)
     built.ledger.dead = not ledger
-    return mesh, built
+    return sail, built
 
 
 def deploy(p, interval, *, positions=None, ledger=False):
@@ -146,12 +144,12 @@ def deploy(p, interval, *, positions=None, ledger=False):
     return follow(*begin(p, start, ledger), p, interval)
 
 
-def follow(mesh, built, p, interval):
+def follow(sail, built, p, interval):
     """Run a released sail for p.duration, with rows every `interval` [s], a multiple of p.dt.
 
     Parameters
     ----------
-    mesh : SailMesh
+    sail : Sail
     built : MembraneScene
     p : SailParameters
     interval : float
@@ -164,19 +162,18 @@ def follow(mesh, built, p, interval):
     if rows < 1 or abs(stride * p.dt / interval - 1) > 1e-9:
         raise ValueError(f"interval = {interval} s must be a multiple of dt = {p.dt} s")
     frames, book = [built.positions()], [(0.0, 0.0, 0.0, 0.0, 0.0)]
-    for _ in range(rows):
-        scene.advance(stride)
+    for _ in driver.march(driver.Steps(p.dt, stride, rows, 0)):
         frames.append(built.positions())
         kept = built.ledger
         defect = kept.angularMomentum - kept.initialAngularMomentum - kept.angularImpulse
         now = kept.balance, kept.drivenWork, defect, kept.angularMomentum, kept.unexplained
         book.append(now)
     times = interval * np.arange(rows + 1)
-    azimuths = np.array([measures.tip_azimuths(mesh, x) for x in frames])
+    azimuths = np.array([measures.tip_azimuths(sail.mesh, x) for x in frames])
     return Deployment(
         times,
         np.array(frames),
-        np.array([measures.deployment_rate(mesh, x) for x in frames]),
+        np.array([measures.deployment_rate(sail.mesh, x) for x in frames]),
         measures.phase_difference(azimuths, p.omega * times).mean(axis=1),
         *np.array(book).T,
     )

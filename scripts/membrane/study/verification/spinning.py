@@ -294,7 +294,7 @@ def spin_string(
         cableDensity=density,
         pointMasses=[0.0] * segments + [tip_mass],
     )
-    sail = scene.set_engines(chain, driven=chain.bodyIds[:1], omega=OMEGA)
+    sail = scene.set_engines(chain, scene.SceneParameters(omega=OMEGA), driven=chain.bodyIds[:1])
     sail.hold([0])
     nodes[:, 0] = stretched_chain(chain, hub)
     sail.place(nodes)
@@ -467,7 +467,7 @@ def spin_disk(cells, *, even=True, poisson=DISK_POISSON, turns=1.5, path="law2",
         Of the film.
     turns : float
     path : str
-        Of `scene.set_engines`.
+        Of SceneParameters.
     step : float
         O.dt over the critical time step, at most.
 
@@ -482,7 +482,7 @@ def spin_disk(cells, *, even=True, poisson=DISK_POISSON, turns=1.5, path="law2",
     nodes, triangles = disk_mesh(cells, even)
     film = scene.film(young, poisson, DISK_DENSITY, DISK_THICKNESS)
     net = scene.add_membrane(nodes, triangles, material=film)
-    sail = scene.set_engines(net, path=path)
+    sail = scene.set_engines(net, scene.SceneParameters(path=path))
     spun = spinning_net(nodes, net)
     sail.place(spun)
     unbalanced = imbalance(sail)

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a kind of sail gives to the driver, which does all else. Needs no YADE."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+
+from .. import measures
+from ..parameters import RunParameters
+
+
+@dataclass(frozen=True, eq=False)
+class Sail:
+    """A sail ready to be put into a scene, about the z axis. N nodes.
+
+    Attributes
+    ----------
+    mesh : object
+        With nodes (N, 3) at rest [m], triangles (T, 3), creases (C, 2) and crease_signs (C,), tips.
+    start : (N, 3) float, node
+        Where to put the nodes [m].
+    tips : (n,) int, node
+        With tip masses.
+    cables : (K, 2) int, node
+        Tethers.
+    hub : (n,) int, node
+        Driven, or on a hub that turns freely.
+    touching : (n,) int, node
+        That touch the spool.
+    held : (n,) int, node
+        Held in the turning frame until the release; with any, there is a spin-up.
+    facts : dict
+        What summary.json tells of it.
+    doubts : sequence of str
+        Warnings.
+    words : str
+        What to tell first of all.
+    """
+
+    mesh: Any
+    start: np.ndarray
+    tips: np.ndarray
+    cables: np.ndarray = field(default_factory=lambda: np.empty((0, 2), dtype=int))
+    hub: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=int))
+    touching: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=int))
+    held: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=int))
+    facts: Mapping = field(default_factory=dict)
+    doubts: Sequence[str] = ()
+    words: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class FinishedSail:
+    """What is left of a run for pictures and files.
+
+    Attributes
+    ----------
+    sail : Sail
+    parameters : RunParameters
+    built : MembraneScene
+    history : dict of (S,) float
+        Columns of history.csv.
+    times : (F,) float
+        Of the shapes [s].
+    frames : sequence of (N, 3) float
+        The shapes [m].
+    folder : Path
+        Of the results.
+    """
+
+    sail: Sail
+    parameters: RunParameters
+    built: Any
+    history: Mapping
+    times: np.ndarray
+    frames: Sequence
+    folder: Path
+
+    def show(self, instants):
+        """Shapes (n, N, 3) [m] nearest to some `instants` [s], each once, and their times (n,)."""
+        picks = np.unique([int(np.argmin(np.abs(self.times - t))) for t in instants])
+        return [self.frames[i] for i in picks], self.times[picks]
+
+    def until(self, last):
+        """Six instants [s] up to that of the shape `last`, closer together early on."""
+        return self.times[last] * (np.arange(6) / 5) ** 1.5
+
+
+class Kind:
+    """A kind of sail; its parameters name it: `RunParameters.sail`.
+
+    Attributes
+    ----------
+    title : str
+        In one line.
+    parameters : class
+        Of RunParameters.
+    measures : tuple of Measure
+        In history.csv, before those of ledger and hub.
+    outcomes : tuple of Outcome
+        In summary.json, before those of the ledger.
+    told : str
+        Measure that is shown beside the progress.
+    """
+
+    title: ClassVar[str]
+    parameters: ClassVar[type[RunParameters]]
+    measures: ClassVar[tuple[measures.Measure, ...]]
+    outcomes: ClassVar[tuple[measures.Outcome, ...]]
+    told: ClassVar[str]
+
+    def sail(self, p: RunParameters) -> Sail:
+        """The sail of parameters `p`; ValueError, in one sentence, if there is none."""
+        raise NotImplementedError
+
+    def explained(self, refusal: str) -> str:
+        """What to tell where the plugin refuses the sail's membrane."""
+        return refusal
+
+    def equip(self, built: Any, p: RunParameters) -> None:
+        """Add engines of its own to a scene, if any."""
+
+    def release_rate(self, built: Any, p: RunParameters) -> float:
+        """Spin [rad/s] at the release; by default omega."""
+        return p.omega
+
+    def draw(self, run: FinishedSail) -> None:
+        """Write pictures of a run."""
+
+    def leave(self, run: FinishedSail) -> dict:
+        """Write further files; returns what else the summary tells among its measures."""
+        return {}

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The paper's sail: a square of four petals, folded to a cross, on tethers about a spool."""
+
+from dataclasses import asdict
+
+import numpy as np
+
+from ...measures import SQUARE, SQUARE_OUTCOMES, in_plots
+from ...mesh import mesh_of
+from ...mesh.fold import fold, fold_report
+from ...parameters import SailParameters
+from ...view import plots
+from ..kind import FinishedSail, Kind, Sail
+
+
+class Square(Kind):
+    """See the module."""
+
+    title = "the paper's square sail, folded to a cross"
+    parameters = SailParameters
+    measures = SQUARE
+    outcomes = SQUARE_OUTCOMES
+    told = "deployment_rate"
+
+    def sail(self, p: SailParameters) -> Sail:
+        """Guides hold the middles of the petals, and the spool the tethers' ends."""
+        mesh = mesh_of(p)
+        start = fold(mesh, p.bar_radius, p.arm_radius, p.layer_gap)
+        return Sail(
+            mesh,
+            start,
+            mesh.tips,
+            mesh.cables,
+            hub=mesh.anchors,
+            touching=np.setdiff1d(mesh.tether_nodes, mesh.anchors),
+            held=mesh.guide_nodes.ravel(),
+            facts={"fold": asdict(fold_report(mesh, start))},
+        )
+
+    def draw(self, run: FinishedSail) -> None:
+        """deployment.png, and shapes.png with six instants up to the fullest deployment."""
+        columns = in_plots(self.measures, run.history)
+        plots.plot_history(run.history, columns, run.folder / "deployment.png")
+        rates = np.interp(run.times, run.history["time"], run.history["deployment_rate"])
+        frames, times = run.show(run.until(int(np.argmax(rates))))
+        plots.plot_shapes(frames, run.sail.mesh, run.folder / "shapes.png", times)
+
+
+KIND = Square()
