@@ -52,9 +52,10 @@ def plot_history(history, plots, path):
 def _draw_lines(axes, history, plot):
     """Draw a measures.Plot; measures that are one of several alike are thin, and named once."""
     minor = [m for m in plot.lines if m.minor]
+    alike = minor and minor[0].label.rstrip(" 0123456789") + "s"
     for m in sorted(plot.lines, key=lambda m: not m.minor):
         style = {"color": "C1", "linewidth": 0.6, "alpha": 0.6} if m.minor else {}
-        label = m.label if m not in minor[1:] else None
+        label = m.label if not m.minor else alike if m is minor[0] else None
         axes.plot(history["time"], plot.factor * history[m.name], label=label, **style)
     axes.set(ylabel=f"{plot.title}\n[{plot.unit}]")
     lowest = min(np.min(history[m.name]) for m in plot.lines)
