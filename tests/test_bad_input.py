@@ -8,7 +8,7 @@ import membrane
 import numpy as np
 from membrane import scene
 from membrane.parameters import SailParameters
-from membrane.run.sail import deploy
+from membrane.run.driver import deploy
 from support import O, SceneTest, Sheet, grid, quiet, scratch
 from yade import utils
 from yade import wrapper as yade
@@ -272,7 +272,7 @@ class TestParameters(Refusals):
             ("poisson", 0.6, "<= 0.5"),
             ("beta", -1.0, ">= 0"),
             ("fold_lines", 0, ">= 1"),
-            ("dt", math.nan, "> 0"),
+            ("dt", math.nan, ">= 0"),
         ):
             self.refused(
                 ValueError, lambda: SailParameters(**{name: bad}), f"{name} = {bad}", limits

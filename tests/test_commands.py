@@ -16,7 +16,7 @@ from unittest.mock import patch
 from membrane import scene
 from membrane.cli import errors
 from membrane.results.unfinished import UNFINISHED
-from membrane.run.sail import LAST_GOOD
+from membrane.results.case_folder import LAST_GOOD
 from processes import Halt
 from support import O, ROOT, scratch, yade_environment
 

@@ -12,7 +12,7 @@ import membrane
 import numpy as np
 from membrane import scene
 from membrane.parameters import SailParameters
-from membrane.run import sail as sails
+from membrane.run import driver
 from membrane.scene import spool
 from support import (
     O,
@@ -104,7 +104,7 @@ def sail_as_released(path, **options):
     blocked = [b.state.blockedDOFs for b in O.bodies]
     O.reset()
     parameters = SailParameters(path=path, **options)
-    _, made = sails.build(parameters)
+    _, made = driver.build(parameters)
     for body, (pos, vel, spin, turned), dofs in zip(O.bodies, bodies, blocked):
         state = body.state
         state.pos, state.vel, state.angVel, state.ori = pos, vel, spin, turned
@@ -126,9 +126,9 @@ class TestReference(FusedTest):
             parameters = SailParameters(
                 path=path, refine=2, crease_law="conservative", zeta=0.05, air_density=0.1
             )
-            mesh, made = sails.build(parameters)
+            sail, made = driver.build(parameters)
             O.dt = 0.3 * made.forces.criticalTimeStep()
-            scene.release(made, parameters.omega, mesh.guide_nodes.ravel())
+            scene.release(made, parameters.omega, sail.held)
             return made
 
         self.both(lambda made: scene.advance(200), make=start)
@@ -202,7 +202,7 @@ class TestReference(FusedTest):
         """States and ledger 50 steps after the release; nodes moved at first by a share `nudge`."""
         O.reset()
         parameters = SailParameters(path=path, exchange_period=period)
-        mesh, made = sails.build(parameters)
+        sail, made = driver.build(parameters)
         rng = np.random.default_rng(1)
         for i in made.membrane.bodyIds:
             state = O.bodies[i].state
@@ -210,7 +210,7 @@ class TestReference(FusedTest):
         O.dt = 0.5 * made.forces.criticalTimeStep()
         with quiet(), self.assertRaisesRegex(RuntimeError, "no equilibrium"):
             scene.spin_up(made, parameters.omega, batch=100, max_time=2.5e-3)
-        scene.release(made, parameters.omega, mesh.guide_nodes.ravel())
+        scene.release(made, parameters.omega, sail.held)
         scene.advance(50)
         return node_states(made.membrane), entries(made.ledger)
 

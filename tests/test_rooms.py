@@ -17,7 +17,8 @@ QUICK = True
 SCRIPTS = ROOT / "scripts"
 ROOMS = ("", "mesh", "scene", "results", "view", "run", "study", "cli")  # the first: the ground
 PLAIN_COMMANDS = "errors|options|calibrate|sweep|workflow"
-WITH_YADE = "scene|run|view.window|study.(benchmarks|sources|stability|verification)"
+WITH_YADE = "scene|run.(case|checkpoint|driver|last_good|record)|view.window"
+WITH_YADE += "|study.(benchmarks|chart|disk|parts|sources|stability|verification)"
 WITH_YADE += f"|cli.(?!{PLAIN_COMMANDS})"  # or with the sources
 
 
@@ -169,7 +170,7 @@ class TestWithoutYade(unittest.TestCase):
             "import membrane; membrane.MembraneForceEngine",
             "from membrane import *",
             "from membrane import scene",
-            "import membrane.run.sail",
+            "import membrane.run.driver",
         ):
             done = plain_python("-c", line)
             self.assertEqual(done.returncode, 1, line)

@@ -9,73 +9,9 @@ cells. The picture is disk.png.
 import argparse
 
 import numpy as np
-from matplotlib.figure import Figure
-from yade.wrapper import Omega
 
-from .. import scene
-from ..study.verification.disk_mesh import disk_mesh
-from ..study.verification.spinning import OMEGA, disk_frequency, frequencies2, spin, spinning_net
-from ..view import plots
+from ..study import disk
 from .options import add_out
-
-CELLS = (4, 8, 16)  # from the centre to the edge
-POISSON = 1 / 3  # that of a net of equilateral triangles, whatever the film's
-MODES = {"saddle, (2, 0)": (2, 0), "umbrella, (0, 1)": (0, 1), "three waves, (3, 0)": (3, 0)}
-KICK = 1e-5  # m/s
-
-
-def vibrate(cells):
-    """Errors (M,) of the frequencies, places (N, 3) [m], triangles, shapes (M, N) as they swing."""
-    Omega().reset()
-    nodes, triangles = disk_mesh(cells)
-    film = scene.film(young=1e9, poisson=POISSON, density=1420.0, thickness=1e-3)
-    disk = scene.add_membrane(nodes, triangles, material=film)
-    sail = scene.set_engines(disk, scene.SceneParameters(path="fused"))
-    flat = spinning_net(nodes, disk)  # stretched by its spin
-    sail.place(flat)
-
-    r, angle = np.hypot(*flat[:, :2].T), np.arctan2(flat[:, 1], flat[:, 0])
-    shapes = [r**m * np.cos(m * angle) * (1 - 2 * n * r**2) for m, n in MODES.values()]
-    shapes = np.array(shapes).T - sail.masses() @ np.array(shapes).T / sail.masses().sum()
-    kick = KICK * shapes.sum(axis=1)[:, None] * [0, 0, 1]
-    times, moved, _ = spin(sail, flat, kick, turns=1.5)
-    found = np.sqrt(frequencies2(times, moved[:, :, 2], shapes, sail.masses()))
-    exact = [disk_frequency(m, n, POISSON) for m, n in MODES.values()]
-    swings = np.sin(OMEGA * np.outer(times, found))
-    swinging = np.linalg.lstsq(swings, moved[:, :, 2], rcond=None)[0]
-    return found / exact - 1, flat, triangles, swinging
-
-
-def draw(errors, run, path):
-    """Draw the errors (R, M) over the cells, and the modes of a run of `vibrate`."""
-    figure = Figure(figsize=(10.5, 3.6))
-    axes = figure.add_axes((0.07, 0.14, 0.36, 0.82))
-    for name, error in zip(MODES, errors.T):
-        axes.loglog(CELLS, 100 * error, "o-", label=f"{name}: order {order(error):.2f}")
-    axes.set_xticks(CELLS, map(str, CELLS))
-    axes.set_yticks([0.2, 0.5, 1, 2, 5], ["0.2", "0.5", "1", "2", "5"])
-    axes.minorticks_off()
-    axes.set(xlabel="cells from centre to edge", ylabel="error of the frequency [%]")
-    axes.set_ylim(bottom=0.1)
-    axes.grid(alpha=0.3)
-    axes.legend(frameon=False, loc="lower left")
-    _, flat, triangles, swinging = run
-    for k, (name, lift) in enumerate(zip(MODES, swinging)):
-        axes = figure.add_axes((0.45 + 0.18 * k, 0.05, 0.18, 0.85), projection="3d")
-        lift = 0.35 * lift / np.abs(lift).max()
-        axes.plot_trisurf(*flat[:, :2].T, lift, triangles=triangles, cmap="cividis")
-        axes.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-0.5, 0.5))
-        axes.set_box_aspect((1, 1, 0.5), zoom=1.3)
-        axes.set_axis_off()
-        figure.text(0.54 + 0.18 * k, 0.78, name, ha="center")
-    meaning = "(nodal diameters, nodal circles); heights are enlarged, at one instant"
-    figure.text(0.72, 0.1, meaning, ha="center", color="0.35", fontsize=9)
-    plots.save(figure, path)
-
-
-def order(error):
-    """Order of convergence, from the errors (R,) of the two finest meshes."""
-    return np.log2(error[-2] / error[-1])
 
 
 def main():
@@ -84,10 +20,10 @@ def main():
     add_out(parser, "out/disk", "folder of disk.png (default: {})")
     out = parser.parse_args().out
     out.mkdir(parents=True, exist_ok=True)
-    runs = [vibrate(cells) for cells in CELLS]
+    runs = [disk.vibrate(cells) for cells in disk.CELLS]
     errors = np.abs([run[0] for run in runs])
-    for name, error in zip(MODES, errors.T):
-        found = f"error {100 * error[-1]:.3f} % on {CELLS[-1]} cells, order {order(error):.2f}"
-        print(f"{name}: {found}")
-    draw(errors, runs[-1], out / "disk.png")
+    for name, error in zip(disk.MODES, errors.T):
+        order = disk.order(error)
+        print(f"{name}: error {100 * error[-1]:.3f} % on {disk.CELLS[-1]} cells, order {order:.2f}")
+    disk.draw(errors, runs[-1], out / "disk.png")
     print(f"Look at {out / 'disk.png'}")

@@ -9,11 +9,12 @@ from dataclasses import dataclass
 from math import ceil
 from pathlib import Path
 
+from .. import __version__, scene  # first, for without YADE it says so
+
 import numpy as np
 import yade.config
 from yade import wrapper as yade_classes
 
-from .. import __version__, scene
 from ..files import write_json
 from ..measures import HUB_OUTCOMES, LEDGER_OUTCOMES
 from ..mesh import tip_masses

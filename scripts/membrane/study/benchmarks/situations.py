@@ -14,7 +14,7 @@ import numpy as np
 from membrane import scene
 from membrane.mesh import sail_mesh
 from membrane.parameters import SailParameters
-from membrane.run import sail as sails
+from membrane.run import driver
 from yade import wrapper as yade
 
 from .sheet import square_sheet
@@ -182,7 +182,7 @@ def contacts(refine):
 
 def folded(refine):
     """The paper's folded sail on path law2, all forces on: its loop and its engine, a side."""
-    _, built = sails.build(SailParameters(refine=refine, path="law2"))
+    _, built = driver.build(SailParameters(refine=refine, path="law2"))
     omega = yade.Omega()
     loop = [e for e in omega.engines if isinstance(e, yade.InteractionLoop)]
     omega.engines = [yade.ForceResetter(), *loop, built.forces]
