@@ -265,6 +265,12 @@ def _mean_crease_angle(at):
     return float(angles.mean()) if len(angles) else pi
 
 
+def _spin_rate(at):
+    """Angular momentum of hub and sail over their moment of inertia [rad/s]."""
+    hub = at.hub.inertia if at.hub else 0.0
+    return float(at.ledger.angularMomentum / (at.once(_inertia) + hub))
+
+
 SHEET = (
     Measure(
         "mean_radius",
@@ -296,7 +302,7 @@ SHEET = (
         "spin_rate",
         "rad/s",
         "mean of the sail",
-        lambda at: float(at.ledger.angularMomentum / at.once(_inertia)),
+        _spin_rate,
         "spin",
         summary=("final",),
     ),

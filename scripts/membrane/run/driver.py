@@ -17,7 +17,6 @@ from yade import wrapper as yade_classes
 
 from ..files import write_json
 from ..measures import HUB_OUTCOMES, LEDGER_OUTCOMES
-from ..mesh import tip_masses
 from ..parameters import Spool, Tethers, attributes, check_steps
 from ..progress import Progress, warn
 from ..scene.spool import add_spool
@@ -64,6 +63,8 @@ def build(p, sail=None):
     kind = SAILS[p.sail]
     sail = sail or kind.sail(p)
     mesh = sail.mesh
+    masses = np.zeros(len(mesh.nodes))
+    masses[sail.tips] = p.tip_mass
     try:
         membrane = scene.add_membrane(
             mesh.nodes,
@@ -73,7 +74,7 @@ def build(p, sail=None):
             sail.cables,
             positions=sail.start,
             material=scene.film(**attributes("MembraneMat", p)),
-            pointMasses=tip_masses(mesh, p.tip_mass).tolist(),
+            pointMasses=masses.tolist(),
             interactions=p.path == "law2",
             **({"radius": p.tether_radius} if isinstance(p, Tethers) else {}),
             **attributes("Membrane", p),
