@@ -4,10 +4,12 @@
 import io
 import unittest
 from contextlib import redirect_stderr
+from dataclasses import fields
 from unittest import mock
 
 import numpy as np
 from membrane import scene
+from membrane.parameters import SceneParameters, attributes
 from membrane.scene import bodies, spool
 from support import O, SceneTest, engines_by_class, grid, set_engines
 
@@ -130,6 +132,30 @@ class TestDrivenBodies(SceneTest):
             (True, False, False),
         )
         self.assertEqual(self.sail.newton.damping, 0)
+
+
+class TestParameters(SceneTest):
+    def test_attributes_of_engines_and_membrane_follow_from_parameters(self):
+        told = {item.name: item.metadata["sets"] for item in fields(SceneParameters)}
+        told = {name: place.split(".") for name, place in told.items() if place}
+        self.assertGreaterEqual(len(told), 13)
+        given = {"crease_law": "conservative", "force_time_step": True, "exchange_period": 7}
+        rest = {name for name in told if name not in given}
+        changed = {name: 0.5 * getattr(SceneParameters(), name) or 0.25 for name in rest}
+        p = SceneParameters(path="fused", **given, **changed)
+        nodes, triangles = grid(3)
+        net = scene.add_membrane(
+            nodes,
+            triangles,
+            material=scene.film(**attributes("MembraneMat", p)),
+            **attributes("Membrane", p),
+        )
+        made = scene.set_engines(net, p)
+        owners = dict.fromkeys(("MembraneForceEngine", "MembraneIntegrator"), made.forces)
+        owners |= {"Membrane": net, "MembraneMat": net.material}
+        for name, (kind, attribute) in told.items():
+            with self.subTest(parameter=name):
+                self.assertEqual(getattr(owners[kind], attribute), getattr(p, name))
 
 
 class TestProgress(SceneTest):
