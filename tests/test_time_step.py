@@ -8,7 +8,8 @@ the largest eigenvalue of (dt2 K + 4 dt C) / M stays below 4.
 import unittest
 
 import numpy as np
-from support import O, SceneTest, Sheet, film_of_the_sail, fold_angle, grid
+from membrane import scene
+from support import O, SceneTest, Sheet, film_of_the_sail, fold_angle, grid, set_engines
 
 CREASES = [(4, 5), (5, 6), (9, 10)]
 SIGNS = [1, 1, -1]
@@ -229,6 +230,20 @@ class TestRuns(TimeStepTest):
             for _ in range(10):
                 sheet.place(3 * sheet.rest)
                 O.step()
+
+    def test_how_often_it_is_checked_is_a_parameter(self):
+        nodes, triangles = grid(4)
+        for period, refused in ((5, 5), (9, 9)):
+            O.reset()
+            net = scene.add_membrane(nodes, triangles)
+            made = set_engines(net, zeta=0.02, check_period=period, energy_tolerance=0)
+            O.dt = 0.99 * made.forces.criticalTimeStep()
+            O.step()
+            with self.assertRaisesRegex(RuntimeError, "critical time step"):
+                for _ in range(20):
+                    made.place(3 * nodes)
+                    O.step()
+            self.assertEqual(O.iter, refused)
 
     def test_longest_step_that_is_accepted_is_the_estimate(self):
         for engine in ({}, {"beta": 3e6, "zeta": 0.1}, {"airDensity": 1e3}):

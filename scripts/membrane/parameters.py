@@ -259,6 +259,14 @@ class Engines:
     energy_tolerance: float = parameter(
         0.1, "-", RUN, "energy from nowhere, over all energy, that stops the run; 0: no watch"
     )
+    check_period: int = parameter(
+        5000,
+        "-",
+        RUN,
+        "steps between two checks of dt against the critical time step",
+        least=1,
+        sets="MembraneForceEngine.timeStepCheckPeriod",
+    )
     force_time_step: bool = parameter(
         False,
         "-",
