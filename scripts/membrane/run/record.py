@@ -62,8 +62,10 @@ class Instant:
         Angle of the hub, or what it is driven by, since the release [rad].
     masses : (N,) float
         [kg]
-    sides : (E, 2) int; critical : (E,) float; rest_areas : (T,) float
-        Of the membrane: nodes, critical lengths [m], areas at rest [m2].
+    sides, kinds : (E, 2) int, (E,) int
+        Nodes of each side; 0 film, 1 crease, 2 tether.
+    rest, critical, rest_areas : (E,) float, (E,) float, (T,) float
+        Lengths at rest and critical lengths [m], areas at rest [m2].
     kept : dict
         What measures keep from row to row; it goes into JSON.
     """
@@ -75,7 +77,8 @@ class Instant:
         self.ledger, self.hub = built.ledger, built.hub
         self.turned = _angle(built.hub) if built.hub else recorder.spin_rate * time
         self.masses, self.rest_areas = recorder.masses, recorder.rest_areas
-        self.sides, self.critical = recorder.sides, recorder.critical
+        self.sides, self.kinds = recorder.sides, recorder.kinds
+        self.rest, self.critical = recorder.rest, recorder.critical
         self._once = {}
 
     def once(self, function):
@@ -122,8 +125,8 @@ class Recorder:
         self.sides = np.array(membrane.sides)
         self.critical = np.array(membrane.criticalLengths)
         self.rest_areas = triangle_areas(mesh.nodes, mesh.triangles)
-        self._rest = np.array(membrane.restLengths)
-        self._kinds = np.array(membrane.sideKinds, dtype=np.int8)
+        self.rest = np.array(membrane.restLengths)
+        self.kinds = np.array(membrane.sideKinds, dtype=np.int8)
         creases = np.array(membrane.creases, dtype=int).reshape(-1, 2)
         self._crease_rows = side_rows(self.sides, creases)
         self._signs = np.zeros(len(self.sides), dtype=np.int8)
@@ -169,12 +172,12 @@ class Recorder:
         angle = np.full(len(self.sides), np.pi)
         angle[self._crease_rows] = self.built.forces.creaseAngles(x)
         fields = {
-            "side_strain": length / self._rest - 1,
+            "side_strain": length / self.rest - 1,
             "tension": np.array(self.built.membrane.tensions(x)),
             "buckled": (length < self.critical).astype(np.int8),
             "crease_angle": angle,
         }
-        lines = {**fields, "fold": self._signs, "kind": self._kinds}
+        lines = {**fields, "fold": self._signs, "kind": self.kinds}
         self._film.write(time, x, _single_precision(self._of_triangles(x, fields)))
         self._lines.write(time, x, _single_precision(lines))
         self.frame_times.append(time)
