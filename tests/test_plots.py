@@ -9,6 +9,7 @@ from unittest import mock
 
 import numpy as np
 from matplotlib.figure import Figure
+from membrane.measures import Measure, in_plots
 from membrane.view import plots
 from mpl_toolkits.mplot3d import proj3d
 
@@ -100,11 +101,11 @@ class TestChart(unittest.TestCase):
 
 class TestHistory(unittest.TestCase):
     def test_a_curve_that_stays_where_it_is_stands_clear_of_the_frame(self):
-        history = {"time": [0.0, 0.1, 0.2], "area": [0.999, 1.0, 0.999], "none": [0.0, 0.0, 0.0]}
+        columns = {"time": [0.0, 0.1, 0.2], "area": [0.999, 1.0, 0.999], "none": [0.0] * 3}
+        history = {name: np.array(values) for name, values in columns.items()}
         with mock.patch.object(Figure, "savefig", autospec=True) as save:
-            plots.plot_history(
-                history, {"area": "area [-]", "none": "none [-]"}, scratch() / "no.png"
-            )
+            lines = [Measure(name, "-", name, None, name) for name in ("area", "none")]
+            plots.plot_history(history, in_plots(lines, history), scratch() / "no.png")
         figure = save.call_args[0][0]
         for axes, top in zip(figure.axes, (1.0, 0.0)):
             low, high = axes.get_ylim()

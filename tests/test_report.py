@@ -131,7 +131,7 @@ class TestReportData(unittest.TestCase):
 
     def test_curves_are_the_history(self):
         history = read_history(short_run() / "history.csv")
-        rate, phase, _ = self.data["curves"]
+        rate, phase, *_ = self.data["curves"]
         np.testing.assert_allclose(self.data["historyTimes"], history["time"], rtol=1e-5)
         held = rate["lines"][0]["values"]
         np.testing.assert_allclose(held, history["deployment_rate"], rtol=1e-5)
@@ -165,7 +165,10 @@ class TestOtherRuns(unittest.TestCase):
     def test_sail_from_a_pattern_has_its_own_curves_and_no_spool(self):
         data = report.run_data(pattern_run())
         curves, measures = self.labels(data)
-        self.assertEqual(curves, ["area over flat area", "crease angle", "spin", "energy"])
+        self.assertEqual(
+            curves,
+            ["radius", "area over flat area", "crease angle", "spin", "energy"],
+        )
         self.assertIn("spin at the end", measures)
         energy = [line["label"] for line in data["curves"][-1]["lines"]]
         self.assertEqual(energy, ["kinetic", "elastic", "creases", "damping work"])
@@ -191,7 +194,7 @@ class TestOtherRuns(unittest.TestCase):
 
     def test_damaged_results_are_refused_with_the_name_of_the_file(self):
         summary = json.loads((short_run() / "summary.json").read_text())
-        other = {**summary, "parameters": {**summary["parameters"], "fold_lines": 3}}
+        other = {**summary, "mesh": {**summary["mesh"], "nodes": 7}}
         history = (short_run() / "history.csv").read_text()
         film = (short_run() / "shapes" / "film.pvd").read_text()
         shape = (short_run() / "shapes" / "film_000003.vtu").read_bytes()

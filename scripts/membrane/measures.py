@@ -308,6 +308,7 @@ SHEET = (
     ),
 )
 
+
 ENERGY = "energy"
 LEDGER = (
     Measure("kinetic_energy", "J", "kinetic", lambda at: at.ledger.kinetic, ENERGY),
@@ -362,12 +363,12 @@ HUB = (
 
 def summarised(measures):
     """Outcomes that the `summary` of Measures asks for."""
-    words = {"final": ("at the end", lambda v: v[-1]), "largest": ("at most", np.max)}
+    words = {"final": ("{} at the end", lambda v: v[-1]), "largest": ("largest {}", np.max)}
     found = []
     for m in measures:
         for which in m.summary:
             word, pick = words[which]
-            label = f"{m.plot or m.label}, {word}"
+            label = word.format(m.plot or m.label)
             found.append(
                 Outcome(
                     f"{which}_{m.name}",

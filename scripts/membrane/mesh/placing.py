@@ -27,6 +27,8 @@ class PatternSail:
         With tip masses; driven.
     lines : tuple
         Sides (E, 2) and FOLD letters (E,) of the mesh.
+    given : (N, 3) float, node
+        Rest positions as in the file [m].
     used : tuple of str
         Names of the file's groups that are tips or hub.
     """
@@ -39,6 +41,7 @@ class PatternSail:
     tips: np.ndarray
     hub: np.ndarray
     lines: tuple
+    given: np.ndarray
     used: tuple = ()
 
 
@@ -63,7 +66,7 @@ def place(sheet, p):
     hub = _hub(sheet, nodes, p.hub_radius)
     used = ("hub", "tips") if named else ("hub",)
     mesh = nodes, sheet.triangles, sheet.creases, sheet.crease_signs
-    return PatternSail(*mesh, start, tips, hub, sheet.lines(), used)
+    return PatternSail(*mesh, start, tips, hub, sheet.lines(), sheet.nodes, used)
 
 
 def _hub(sheet, nodes, radius):

@@ -93,6 +93,9 @@ def read_run(folder):
     triangles = read_cells(shapes[0][1], 3)
     sides = read_cells(lines[0][1], 2)
     nodes = len(read_frame(shapes[0][1])[0])
+    mesh = summary.get("mesh")
+    if not isinstance(mesh, dict) or mesh.get("nodes") != nodes:
+        raise BadFile(file, "mesh", f"must be of {nodes} nodes, as the shapes are")
     fields = read_frame(lines[0][1])[1]
     for name in ("fold", "kind"):
         if name not in fields:
@@ -126,8 +129,7 @@ def _parameters(file, summary):
 
 def _nodes(file, summary, name, nodes):
     """Nodes (n,) of a name that a summary tells."""
-    mesh = summary.get("mesh")
-    ids = mesh.get(name) if isinstance(mesh, dict) else None
+    ids = summary["mesh"].get(name)
     if not isinstance(ids, list) or not all(type(i) is int and 0 <= i < nodes for i in ids):
         raise BadFile(file, f"mesh.{name}", f"must be a list of nodes, which are below {nodes}")
     return np.array(ids, dtype=int)

@@ -90,7 +90,7 @@ def build(p, sail=None):
     built = scene.set_engines(membrane, p, driven=driven, touching=bodies[sail.touching].tolist())
     built.hold(sail.hub)
     built.hold(sail.held)
-    kind.equip(built, p)
+    kind.equip(sail, built, p)
     return sail, built
 
 
@@ -145,6 +145,8 @@ class Steps:
 def steps_of(p, critical):
     """The Steps that parameters of a run ask for, whose `critical` step [s] is known.
 
+    They and the rows are no longer than asked for, and end at the duration.
+
     Raises
     ------
     ValueError
@@ -155,20 +157,19 @@ def steps_of(p, critical):
             f"dt = {p.dt} s must be <= {critical:.4g} s, the critical time step of this sail "
             "(force_time_step overrules)"
         )
-    if p.dt:
-        dt, interval = p.dt, min(p.history_interval, p.duration)
-        stride = max(1, round(interval / dt))
-        rows = max(1, round(p.duration / (stride * dt)))
-    elif not p.duration > 0:
-        raise ValueError(f"duration = {p.duration} s must be > 0 where dt is chosen here")
-    else:
-        longest = min(STEP * critical, p.duration)
-        if p.omega > 0:
-            longest = min(longest, TURN_STEP / p.omega)
-        check_steps(p.duration, longest)
-        rows = _parts(p.duration, max(p.history_interval, longest))
-        stride = _parts(p.duration / rows, longest)
-        dt = p.duration / rows / stride
+    if not 0 < p.duration >= p.dt:
+        raise ValueError(
+            f"duration = {p.duration} s: must be > 0" + f" and >= dt = {p.dt} s" * (p.dt > 0)
+        )
+    longest = min(p.dt or STEP * critical, p.duration)
+    if not p.dt and p.omega > 0:
+        longest = min(longest, TURN_STEP / p.omega)
+    check_steps(p.duration, longest)
+    rows = _parts(p.duration, max(p.history_interval, longest))
+    stride = _parts(p.duration / rows, longest)
+    dt = p.duration / rows / stride
+    if abs(dt / p.dt - 1 if p.dt else 1) < 1e-9:
+        dt = p.dt  # to the last digit
     shapes = min(p.shapes_interval, p.duration)
     return Steps(dt, stride, rows, max(1, round(shapes / (stride * dt))) if shapes > 0 else 0)
 

@@ -120,7 +120,7 @@ class Kind:
         """What to tell where the plugin refuses the sail's membrane."""
         return refusal
 
-    def equip(self, built: Any, p: RunParameters) -> None:
+    def equip(self, sail: Sail, built: Any, p: RunParameters) -> None:
         """Add engines of its own to a scene, if any."""
 
     def release_rate(self, built: Any, p: RunParameters) -> float:

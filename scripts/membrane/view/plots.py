@@ -58,9 +58,9 @@ def _draw_lines(axes, history, plot):
         label = m.label if not m.minor else alike if m is minor[0] else None
         axes.plot(history["time"], plot.factor * history[m.name], label=label, **style)
     axes.set(ylabel=f"{plot.title}\n[{plot.unit}]")
-    lowest = min(np.min(history[m.name]) for m in plot.lines)
-    if lowest >= 0:
-        axes.set(ylim=(0, None))
+    drawn = plot.factor * np.array([history[m.name] for m in plot.lines])
+    if drawn.min() >= 0:
+        axes.set(ylim=(0, 1.05 * drawn.max() or None))
     if len(plot.lines) > 1:
         axes.legend(frameon=False)
     axes.grid(alpha=0.3)

@@ -25,7 +25,7 @@ from matplotlib.figure import Figure
 from ...measures import RPM, spin_by_momentum
 from ...parameters import ASSUMED, SPIN, SailParameters, changed, parameter, with_defaults
 from ...view import plots
-from ..kind import FinishedSail
+from ..kind import FinishedSail, Sail
 from .square import Square
 
 THICKNESS = 7.5e-6  # m, of the polyimide film
@@ -94,7 +94,7 @@ class Ikaros(Square):
     parameters = IkarosParameters
     told = "hub_spin"
 
-    def equip(self, built: Any, p: IkarosParameters) -> None:
+    def equip(self, sail: Sail, built: Any, p: IkarosParameters) -> None:
         """Let the sun shine, from above, if it does."""
         from yade.wrapper import Omega
 

@@ -91,11 +91,11 @@ class AnySheet(Kind):
         refused, remesh, _ = refusal.partition(REMESH)
         return refused + ("; mesh it otherwise, a crease pattern by another --size" * bool(remesh))
 
-    def equip(self, built: Any, p: PatternParameters) -> None:
-        """Nothing is added; what cannot be damped is told."""
+    def equip(self, sail: Sail, built: Any, p: PatternParameters) -> None:
+        """Nothing is added; a side that makes the time step much shorter is told."""
         film = built.membrane
         springs = (np.array(a) for a in (film.sides, film.stiffnesses, film.masses))
-        for doubt in about_slow_sides(np.array(film.nodes), *springs, p.zeta):
+        for doubt in about_slow_sides(sail.mesh.given, *springs, p.zeta):
             warn(doubt)
 
     def draw(self, run: FinishedSail) -> None:
