@@ -167,7 +167,7 @@ class TestOtherRuns(unittest.TestCase):
         curves, measures = self.labels(data)
         self.assertEqual(
             curves,
-            ["radius", "area over flat area", "crease angle", "spin", "energy"],
+            ["radius", "area over flat area", "crease angle", "spin", "energy", "film strain"],
         )
         self.assertIn("spin at the end", measures)
         energy = [line["label"] for line in data["curves"][-1]["lines"]]
@@ -411,7 +411,7 @@ class TestReportInBrowser(unittest.TestCase):
     def test_moving_along_each_curve_moves_the_sail(self):
         shapes = [self.picture()]
         svgs = self.driver.find_elements(By.CSS_SELECTOR, ".plot svg")
-        self.assertEqual(len(svgs), 3)
+        self.assertEqual(len(svgs), 4)
         for svg in svgs:
             times = []
             for share in (-0.2, 0.2, 0.47):  # of the width, from the middle

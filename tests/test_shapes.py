@@ -14,6 +14,7 @@ from membrane.files import BadFile
 from membrane.geometry import crease_angles, triangle_areas
 from membrane.mesh import sail_mesh
 from membrane.parameters import SailParameters
+from membrane.results.history import read_history
 from membrane.results.output import VtkSeries, list_series, read_frame
 from support import plane_stress_stiffness, read_grid, scratch, short_run
 
@@ -77,6 +78,17 @@ class TestShapes(unittest.TestCase):
         self.assertLess(strain.min(), -0.01)
         self.assertGreater(strain.max(), 1e-5)
         np.testing.assert_allclose(self.lines["side_strain"], strain, rtol=1e-6, atol=1e-9)
+
+    def test_history_tells_the_largest_strain_of_the_film(self):
+        times = [time for time, _ in list_series(short_run() / "shapes" / "sides.pvd")]
+        history = read_history(short_run() / "history.csv")
+        at = int(np.argmin(np.abs(history["time"] - times[SHAPE])))
+        film = self.lines["kind"] < 2
+        largest = np.max((self.now / self.rest - 1)[film])
+        self.assertAlmostEqual(history["film_strain"][at] / largest, 1, places=9)
+        summary = json.loads((short_run() / "summary.json").read_text())
+        told = summary["measures"]["largest_film_strain"]
+        self.assertEqual(told, history["film_strain"].max())
 
     def test_buckled_sides_are_shorter_than_the_critical_length(self):
         p = self.parameters

@@ -25,6 +25,7 @@ class Shown(NamedTuple):
 DEGREES = Shown("deg", 180 / pi)
 RPM = Shown("rpm", 30 / pi)
 MILLIJOULES = Shown("mJ", 1e3)
+MICROSTRAIN = Shown("10⁻⁶", 1e6)
 
 
 @dataclass(frozen=True)
@@ -309,6 +310,11 @@ SHEET = (
 )
 
 
+def _film_strain(at):
+    film = at.kinds < 2
+    return float(np.max(side_lengths(at.x, at.sides[film]) / at.rest[film], initial=1.0) - 1)
+
+
 ENERGY = "energy"
 LEDGER = (
     Measure("kinetic_energy", "J", "kinetic", lambda at: at.ledger.kinetic, ENERGY),
@@ -335,6 +341,15 @@ LEDGER = (
         "-",
         "buckled sides",
         lambda at: int(np.sum(side_lengths(at.x, at.sides) < at.critical)),
+    ),
+    Measure(
+        "film_strain",
+        "-",
+        "largest of a side",
+        _film_strain,
+        "film strain",
+        MICROSTRAIN,
+        summary=("largest",),
     ),
 )
 
@@ -450,6 +465,7 @@ HUB_OUTCOMES = (  # of a hub that turns freely; after: mean over the last quarte
 )
 
 LEDGER_OUTCOMES = (
+    *summarised(LEDGER),
     Outcome(
         "largest_spool_work",
         "J",
