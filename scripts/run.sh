@@ -31,9 +31,10 @@ usage: scripts/run.sh COMMAND [options]
 
 In the folder of the sources also:
 
-  test [-j N] [--full | --quick] [MODULE ...]
+  test [-j N] [--full | --quick] [--coverage] [MODULE ...]
                             run the tests, or those of some modules; --full adds the long ones,
-                            --quick keeps to those that need no scene, less than a minute
+                            --quick keeps to those that need no scene, less than a minute;
+                            --coverage, and --full, tell what of the package ran meanwhile
   check                     a short test: build, load, check the layout, deploy on both paths, save
                             and load, package
   bench [options]           measure the speed beside YADE's own functors and LAMMPS: tables, and
@@ -45,6 +46,7 @@ In the folder of the sources also:
   chart [options]           accuracy against time for every path, step and mesh, into
                             reference/chart.csv and chart.png
   viewer                    bundle the viewer of report.html, which npm's registry holds parts of
+  tidy                      hold the C++ sources against clang-tidy, as .clang-tidy has it
   sanitize                  the C++ tests under address and undefined-behaviour sanitizers, and the
                             threads under a race check
   attack [--short] [NAME ...]
@@ -55,7 +57,8 @@ In the folder of the sources also:
   package                   make build/package/yade-membrane_….deb, for the YADE that is here
   probe [--write]           tell how this YADE's classes differ from the nearest known release
   format [--check]          format C++ and Python sources; --check changes nothing and fails where
-                            a file is not formatted or a linter complains
+                            a file is not formatted, a linter complains or types do not fit;
+                            options of the tools for Python are in pyproject.toml
 
 Each command first installs the Debian packages it lacks. With --in SUITE, the code name of a Debian,
 it runs in that one, which is made once, by root, in ~/.cache/yade-membrane. To start YADE by hand:
@@ -77,9 +80,11 @@ sweep_packages=(python3-jinja2)
 workflow_packages=(snakemake)
 calibrate_packages=(python3-scipy)
 slurm_packages=(slurmctld slurmd slurm-client munge) # for a test
-format_packages=(clang-format black python3-flake8 shellcheck)
+coverage_packages=(python3-coverage)
+format_packages=(clang-format black python3-flake8 mypy python3-numpy shellcheck) # numpy: its types
 
-no_display=(-n) # how YADE is told to do without
+no_display=(-n)   # how YADE is told to do without
+launch=(exec env) # how it is started: in this shell's place
 
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.." && pwd -P)
 build=$root/build
@@ -265,8 +270,26 @@ run_yade() {
     ((threads <= 4 * $(nproc))) || die "-j $threads: too many threads for the $(nproc) cores of this machine"
     set_environment
     # Ctrl-C waits until the script can end in one sentence; YADE itself would answer by a traceback.
-    exec env --block-signal=INT yade "${no_display[@]}" -x -j "$threads" "$script" "${options[@]}"
+    "${launch[@]}" --block-signal=INT yade "${no_display[@]}" -x -j "$threads" "$script" "${options[@]}"
 }
+
+# Has the tests, and the processes that they start, note what of the package they run, and says it when this shell ends.
+measure_coverage() {
+    local folder=$build/coverage
+    rm -rf "$folder"
+    mkdir -p "$folder/start"
+    # Python imports a module of this name when it starts; sitecustomize is for a test.
+    echo "import coverage; coverage.process_startup()" >"$folder/start/usercustomize.py"
+    export COVERAGE_PROCESS_START=$root/pyproject.toml COVERAGE_FILE=$folder/data PYTHONPATH=$folder/start${PYTHONPATH:+:$PYTHONPATH}
+    launch=(env)
+    trap report_coverage EXIT
+}
+report_coverage() (
+    unset COVERAGE_PROCESS_START
+    cd "$root"
+    { python3 -m coverage combine --quiet && python3 -m coverage report; } ||
+        say "test: there is no coverage to tell of"
+)
 
 run_tests() {
     # Those in C++, if any; then those in YADE, away from the caller's files.
@@ -275,7 +298,16 @@ run_tests() {
     fi
     mkdir -p "$build/tests"
     cd "$build/tests"
-    run_yade "$root/tests/run_tests.py" "$@"
+    local -a options=()
+    local option
+    for option; do
+        case $option in
+        --full | --coverage) [[ ${launch[0]} == env ]] || measure_coverage ;;&
+        --coverage) ;;
+        *) options+=("$option") ;;
+        esac
+    done
+    run_yade "$root/tests/run_tests.py" "${options[@]}"
 }
 
 # build_sanitized FOLDER SANITIZERS COMPILER PLUGIN TARGET...: builds with sanitizers, with the plugin if that is ON.
@@ -302,10 +334,30 @@ run_sanitized() {
 
 memory_sanitizers=address,undefined,float-cast-overflow
 
+# Number of the LLVM that the system packages.
+llvm_here() {
+    of_release llvm | grep . ||
+        die "$command: $(system PRETTY_NAME) is none of those whose LLVM is known: $(column suite | xargs)"
+}
+
+# The sources in a few large files, which takes an eighth of the time.
+tidy() {
+    local llvm folder=$root/build-tidy
+    llvm=$(llvm_here)
+    need "${run_packages[@]}" "${build_packages[@]}" "clang-$llvm" "clang-tidy-$llvm" "libomp-$llvm-dev"
+    mkdir -p "$folder"
+    configure "$folder" -DCMAKE_CXX_COMPILER="clang++-$llvm" -DCMAKE_BUILD_TYPE=Release \
+        -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=15 >"$folder.log"
+    # Included sources are analysed like others; lines of "N warnings generated" are left out.
+    "run-clang-tidy-$llvm" -quiet -p "$folder" -j "$(nproc)" -extra-arg=-Xclang \
+        -extra-arg=-analyzer-opt-analyze-headers '/membrane_(mechanics|plugin)\.dir/' >"$folder.log" 2>&1 ||
+        { grep -vE '^clang-tidy|^[0-9]+ warnings' "$folder.log" >&2 && die "tidy: see above"; }
+    say "tidy: nothing to mend"
+}
+
 sanitize() {
     local llvm
-    llvm=$(of_release llvm)
-    [[ -n $llvm ]] || die "sanitize: $(system PRETTY_NAME) is none of those whose LLVM is known: $(column suite | xargs)"
+    llvm=$(llvm_here)
     # GCC's OpenMP is unknown to the race check, LLVM's tells it of its barriers.
     need g++ cmake make libeigen3-dev libgtest-dev "clang-$llvm" "libclang-rt-$llvm-dev" "libomp-$llvm-dev"
     UBSAN_OPTIONS=print_stacktrace=1 run_sanitized build-asan $memory_sanitizers g++
@@ -330,7 +382,7 @@ python_sources() { find "$root/scripts" "$root/tests" "$root/reference" -name '*
 format() {
     need "${format_packages[@]}"
     local -a cpp python shell=("$root"/scripts/*.sh "$root"/scripts/packaging/* "$root/scripts/workflow/slurm/status.sh" "$root/.ci/run")
-    local -a black=(black -q -l 100)
+    local -a black=(black -q --config "$root/pyproject.toml") flake8
     mapfile -t cpp < <(cpp_sources)
     mapfile -t python < <(python_sources)
     case ${1-} in
@@ -342,8 +394,11 @@ format() {
         local failed=0
         clang-format --dry-run -Werror "${cpp[@]}" || failed=1
         "${black[@]}" --check --diff "${python[@]}" || failed=1
-        # E203 and W503 contradict black.
-        python3 -m flake8 -j1 --isolated --max-line-length 100 --extend-ignore E203,W503 "${python[@]}" || failed=1
+        # flake8 does not read pyproject.toml by itself.
+        mapfile -t flake8 < <(python3 -c 'import sys, tomllib
+for option in tomllib.load(sys.stdin.buffer)["tool"]["flake8"].items(): print("--%s=%s" % option)' <"$root/pyproject.toml")
+        python3 -m flake8 -j1 --isolated "${flake8[@]}" "${python[@]}" || failed=1
+        (cd "$root" && mypy --no-error-summary) || failed=1
         shellcheck "${shell[@]}" || failed=1
         ((!failed)) || die "format: see above; scripts/run.sh format mends the layout"
         say "format: nothing to change in ${#cpp[@]} C++, ${#python[@]} Python and ${#shell[@]} shell files"
@@ -418,7 +473,8 @@ watch)
     ;;
 test)
     need "${sail_packages[@]}" "${sweep_packages[@]}" "${workflow_packages[@]}" "${calibrate_packages[@]}" "${test_packages[@]}"
-    [[ " $* " != *" --full "* ]] || need "${slurm_packages[@]}"
+    [[ " $* " != *" --full "* ]] || need "${slurm_packages[@]}" "${coverage_packages[@]}"
+    [[ " $* " != *" --coverage "* ]] || need "${coverage_packages[@]}"
     compile
     viewer_if_possible
     (need "${animation_packages[@]}" "${browser_packages[@]}") || true # tests say what they lack
@@ -495,6 +551,10 @@ calibrate)
     compile
     set_environment
     exec python3 "$root/scripts/calibrate.py" "$@"
+    ;;
+tidy)
+    take_nothing "$@"
+    tidy
     ;;
 sanitize)
     take_nothing "$@"

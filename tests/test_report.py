@@ -170,7 +170,7 @@ class TestOtherRuns(unittest.TestCase):
             ["radius", "area over flat area", "crease angle", "spin", "energy", "film strain"],
         )
         self.assertIn("spin at the end", measures)
-        energy = [line["label"] for line in data["curves"][-1]["lines"]]
+        energy = [line["label"] for line in data["curves"][-2]["lines"]]
         self.assertEqual(energy, ["kinetic", "elastic", "creases", "damping work"])
         self.assertIsNone(data["spool"])
         self.assertEqual(len(data["tips"]), 4)

@@ -25,7 +25,7 @@ struct View {
     char kind() const {
         const char* format = buffer.format ? buffer.format : "B";
         if (std::strchr("@=<", *format)) ++format;
-        return *format && !format[1] ? *format : 0;
+        return *format && !format[1] ? *format : '\0';
     }
 
     string shape() const {

@@ -50,7 +50,7 @@ void ContactBook::turnPage(const MembraneForceEngine& forces, Scene& scene, cons
         const shared_ptr<Body> other = bodyAt(scene, contact.other);
         if (!other || !other->state) continue;
         const Vector2i pair(contact.node, contact.other);
-        end(std::lower_bound(pairs.begin() + old, pairs.end(), pair, isBefore) - pairs.begin());
+        end(std::lower_bound(pairs.data() + old, pairs.data() + pairs.size(), pair, isBefore) - pairs.data());
         const bool goesOn = old < pairs.size() && pairs[old] == pair;
         const Real work = goesOn ? works[old] : loaded ? -contact.stored : 0.;
         Real deepest = goesOn ? most[old] : 0.;

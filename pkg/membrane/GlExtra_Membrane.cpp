@@ -35,9 +35,9 @@ constexpr Real edgeOnShade = 0.6; ///< brightness of a face seen edge-on, of one
 /// Colour of a value between 0 and 1; beyond, that of the nearest.
 Vector3r colourOf(const Scale& scale, Real share) {
     const Real place =
-        share > 0. ? (scale.size() - 1) * std::min(share, Real(1)) : Real(0); // 0 also if it is no number
+        share > 0. ? Real(scale.size() - 1) * std::min(share, Real(1)) : Real(0); // 0 also if it is no number
     const std::size_t below = std::min(static_cast<std::size_t>(place), scale.size() - 2);
-    return scale[below] + (place - below) * (scale[below + 1] - scale[below]);
+    return scale[below] + (place - Real(below)) * (scale[below + 1] - scale[below]);
 }
 
 Vector3r strainColour(Real share, bool buckled) {
@@ -173,7 +173,7 @@ GlExtra_Membrane::Shape GlExtra_Membrane::shape(const shared_ptr<Membrane>& of, 
     for (const ::membrane::Side& side : rest.sides) {
         const Real length = (made.x[side.b] - made.x[side.a]).norm();
         made.strains.push_back(length / side.restLength - 1.);
-        made.buckled.push_back(length < side.critical);
+        made.buckled.push_back(length < side.critical ? 1 : 0);
     }
     for (const Vector3i& t : of->triangles) {
         Real strain = -1.;
@@ -184,7 +184,7 @@ GlExtra_Membrane::Shape GlExtra_Membrane::shape(const shared_ptr<Membrane>& of, 
             buckled = buckled || made.buckled[side];
         }
         made.triangleStrains.push_back(strain);
-        made.triangleBuckled.push_back(buckled);
+        made.triangleBuckled.push_back(buckled ? 1 : 0);
     }
     return made;
 }
@@ -202,7 +202,7 @@ void GlExtra_Membrane::chooseRange(const vector<Shape>& all) {
                      [](Real strain) { return std::isfinite(strain); });
     Real most = least;
     if (!strains.empty()) {
-        const auto place = strains.begin() + (strains.size() - 1) * 95 / 100;
+        const auto place = std::next(strains.begin(), static_cast<long>((strains.size() - 1) * 95 / 100));
         std::nth_element(strains.begin(), place, strains.end());
         most = roundedUp(std::max(least, *place));
     }

@@ -450,8 +450,8 @@ vector<Vector3r> MembraneForceEngine::lastVelocities() const {
 boost::python::object MembraneForceEngine::lastPositionsBytes() const {
     const vector<Vector3r> x = lastPositions();
     static_assert(sizeof(Vector3r) == 3 * sizeof(Real));
-    return boost::python::object(boost::python::handle<>(
-        PyBytes_FromStringAndSize(reinterpret_cast<const char*>(x.data()), x.size() * sizeof(Vector3r))));
+    return boost::python::object(boost::python::handle<>(PyBytes_FromStringAndSize(
+        reinterpret_cast<const char*>(x.data()), static_cast<Py_ssize_t>(x.size() * sizeof(Vector3r)))));
 }
 
 vector<Vector3r> MembraneForceEngine::channelForces(int channel) const {
@@ -507,7 +507,7 @@ vector<Real> MembraneForceEngine::creaseAngles(const boost::python::object& at) 
 
 /// The scene, which must hold the nodes and not be running: forces that threads add to must not be summed.
 shared_ptr<Scene> MembraneForceEngine::sceneAtRest() const {
-    const shared_ptr<Scene> current = Omega::instance().getScene();
+    shared_ptr<Scene> current = Omega::instance().getScene();
     given().bodies(*current);
     if (StepGuard::othersRun())
         throw std::runtime_error(getClassName() + ": nodeForces: the scene is running; pause it");

@@ -110,7 +110,7 @@ void MembraneIntegrator::arrange() {
     const bool continued = holds(*scene);
     owned_.clear();
     for (const int i : allNodes_) {
-        mine[i] = belongsHere(i);
+        mine[i] = belongsHere(i) ? 1 : 0;
         const auto place = std::lower_bound(shared_.begin(), shared_.end(), i);
         const bool wasShared = place != shared_.end() && *place == i;
         const std::size_t k = place - shared_.begin();

@@ -76,7 +76,7 @@ py::object shown(const string& text) {
     return py::object(text.size());
 }
 
-#define MEMBRANE_SEE_ONE(r, object, member) seen[BOOST_PP_STRINGIZE(member)] = shown(object->member);
+#define MEMBRANE_SEE_ONE(r, object, member) seen[BOOST_PP_STRINGIZE(member)] = shown((object)->member);
 #define MEMBRANE_SEE(Class, members)                                                                                   \
     if (const auto* const object = dynamic_cast<const Class*>(&given)) {                                               \
         BOOST_PP_SEQ_FOR_EACH(MEMBRANE_SEE_ONE, object, members)                                                       \

@@ -12,6 +12,7 @@ the ground, which is beside this file, with what all need, as files, parameters 
 """
 
 import sys
+from typing import Any
 
 from . import _former, _load  # noqa: F401
 
@@ -27,7 +28,7 @@ def _load_plugin():
     __all__[:] = sorted(classes)
 
 
-def __getattr__(name):
+def __getattr__(name: str) -> Any:
     """A class of the plugin, which is loaded only now."""
     if name in (*__all__, *_load.DRAWERS):
         _load_plugin()

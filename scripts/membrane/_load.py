@@ -38,7 +38,7 @@ ALIASES = {"Ig2_Sphere_Sphere_MembraneGeom": "Ig2_MembraneNode_MembraneNode_Memb
 DRAWERS = ("GlExtra_Membrane",)  # only where YADE has its 3D view
 
 
-def load():
+def load() -> dict[str, type]:
     """Give the plugin's classes by name; load and register them first if YADE has them not.
 
     A YADE built with them in its source tree has them, whatever its version.
@@ -93,7 +93,8 @@ def _module(version, precision):
     """The extension module, loaded only if it is for a YADE of this version and precision."""
     folder = Path(__file__).parent
     right = folder / f"_membrane{importlib.machinery.EXTENSION_SUFFIXES[0]}"
-    built = right if right.exists() else next(folder.glob("_membrane*.so"), None)
+    found = (right, *folder.glob("_membrane*.so"))
+    built = next((path for path in found if path.exists()), None)
     if built is None:
         raise ImportError(f"membrane: {right} is missing; scripts/run.sh build makes it")
     release = built_for(built)
@@ -114,7 +115,7 @@ def _module(version, precision):
         ) from None
 
 
-def built_for(module):
+def built_for(module: Path) -> str:
     """The release of YADE that an extension module was built for, from its file alone.
 
     Loading it calls YADE already.

@@ -9,8 +9,10 @@ import json
 import math
 import os
 import secrets
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
 LARGEST = 256 * 2**20  # bytes; ten million nodes fill about as much
 SHOWN = 60  # characters of a bad value that a message repeats
@@ -28,12 +30,12 @@ class BadFile(ValueError):
     reason : str
     """
 
-    def __init__(self, path, place, reason):
+    def __init__(self, path: Path | str, place: str, reason: str) -> None:
         where = f"{path}: {place}" if place else str(path)
         super().__init__(" ".join(f"{where}: {reason}".split()))
 
 
-def shown(value):
+def shown(value: object) -> str:
     """A value as a message repeats it: on one line and not too long."""
     # Never the whole of a long list or number: its text may be larger than the file.
     if isinstance(value, (list, dict)):
@@ -44,7 +46,7 @@ def shown(value):
     return text if len(text) <= SHOWN else text[:SHOWN] + "…"
 
 
-def is_value(text):
+def is_value(text: str) -> bool:
     """Whether a text is a finite number, written as others than Python write it, too."""
     try:
         return "_" not in text and math.isfinite(float(text))
@@ -52,7 +54,7 @@ def is_value(text):
         return False
 
 
-def read_bytes(path, largest=LARGEST):
+def read_bytes(path: Path | str, largest: int = LARGEST) -> bytes:
     """All of a file's bytes; BadFile if there are none or more than `largest`."""
     with open(path, "rb") as file:
         content = file.read(largest + 1)
@@ -63,7 +65,7 @@ def read_bytes(path, largest=LARGEST):
     return content
 
 
-def read_text(path, largest=LARGEST):
+def read_text(path: Path | str, largest: int = LARGEST) -> str:
     """A file's text, which must be UTF-8; BadFile otherwise."""
     try:
         return read_bytes(path, largest).decode("utf-8-sig")
@@ -75,7 +77,7 @@ class GivenTwice(ValueError):
     """A key that one object names twice: the message is the key."""
 
 
-def one_of_each(pairs):
+def one_of_each(pairs: Iterable[tuple[Any, Any]]) -> dict:
     """A dict of pairs of key and value; GivenTwice if a key is there twice."""
     found = {}
     for key, value in pairs:
@@ -85,7 +87,7 @@ def one_of_each(pairs):
     return found
 
 
-def read_json(path, largest=LARGEST):
+def read_json(path: Path | str, largest: int = LARGEST) -> Any:
     """What a JSON file holds, by the letter of RFC 8259; an object must not name a key twice.
 
     Raises
@@ -94,10 +96,10 @@ def read_json(path, largest=LARGEST):
         Also for NaN and Infinity, for numbers too large for a float and for deep nesting.
     """
 
-    def refuse(word):
+    def refuse(word: str) -> None:
         raise BadFile(path, "", f"holds {word}, which is no number of JSON")
 
-    def number(text):
+    def number(text: str) -> float:
         value = float(text)
         if not math.isfinite(value):
             raise BadFile(path, "", f"holds {text[:SHOWN]}, too large a number")
@@ -121,7 +123,7 @@ def read_json(path, largest=LARGEST):
         raise BadFile(path, "", "holds a number of too many digits") from None
 
 
-def read_object(path, largest=LARGEST):
+def read_object(path: Path | str, largest: int = LARGEST) -> dict:
     """The object (dict) that a JSON file holds; BadFile if it holds something else."""
     found = read_json(path, largest)
     if not isinstance(found, dict):
@@ -130,7 +132,7 @@ def read_object(path, largest=LARGEST):
 
 
 @contextmanager
-def named(path):
+def named(path: Path | str) -> Iterator[None]:
     """An OSError in the block that names no file, or a temporary one, names `path`."""
     try:
         yield
@@ -144,7 +146,7 @@ def named(path):
 
 
 @contextmanager
-def replacing(path):
+def replacing(path: Path | str) -> Iterator[Path]:
     """Give a path to write to, which takes the place of `path` at the end of the block.
 
     Readers see either the old file or the new one, also after a power cut. Where the block ends by
@@ -174,32 +176,32 @@ def _new_file(path):
             return new
 
 
-def replace_text(path, text):
+def replace_text(path: Path | str, text: str) -> None:
     """Write a text file so that readers see either the old one or the new one."""
     with replacing(path) as part:
         part.write_text(text, encoding="utf-8")
 
 
-def write_json(path, content):
+def write_json(path: Path | str, content: object) -> None:
     """Write a JSON file so that readers see either the old one or the new one."""
     replace_text(path, json.dumps(content, indent=2, allow_nan=False) + "\n")
 
 
-def settle(folder):
+def settle(folder: Path | str) -> None:
     """Wait until all in `folder` is on the disk, so that a power cut cannot take it back."""
     folder = Path(folder)
     for path in [*folder.rglob("*"), folder]:
         flush(path)
 
 
-def add_to_sum(checksum, path, size=-1):
+def add_to_sum(checksum: Any, path: Path | str, size: int = -1) -> Any:
     """Add a file's first `size` bytes, -1: all, to a checksum of hashlib, and give that back."""
     with open(path, "rb") as file:
         checksum.update(file.read(size))
     return checksum
 
 
-def flush(path):
+def flush(path: Path | str) -> None:
     """Wait until a file, or the names in a folder, are on the disk."""
     handle = os.open(path, os.O_RDONLY)
     try:

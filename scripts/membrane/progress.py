@@ -3,7 +3,9 @@
 
 import sys
 import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import TextIO
 
 
 class Terminated(BaseException):
@@ -22,11 +24,11 @@ class Progress:
         Default: standard error.
     """
 
-    def __init__(self, label, total, stream=None):
+    def __init__(self, label: str, total: float, stream: TextIO | None = None) -> None:
         self.label, self.total, self.stream = label, total, stream or sys.stderr
         self.start, self.shown, self.tenth = time.monotonic(), 0.0, -1
 
-    def update(self, done, note=""):
+    def update(self, done: float, note: str = "") -> None:
         """Tell that simulated time `done` [s] is reached."""
         wall = max(time.monotonic() - self.start, 1e-9)
         left = max(0.0, self.total - done) * wall / done if done > 0 else 0.0
@@ -36,7 +38,7 @@ class Progress:
         )
         self.show(min(1.0, done / self.total) if self.total > 0 else 1.0, text)
 
-    def show(self, share, text):
+    def show(self, share: float, text: str) -> None:
         """Tell that `share` (0 to 1) of the work is done."""
         now, live, tenth = time.monotonic(), self.stream.isatty(), int(10 * share)
         if share < 1 and (now - self.shown < 0.2 if live else tenth == self.tenth):
@@ -50,7 +52,9 @@ class Progress:
 
 
 @contextmanager
-def stages(label, weights, silent=False, stream=None):
+def stages(
+    label: str, weights: dict[str, float], silent: bool = False, stream: TextIO | None = None
+) -> Iterator[Callable[[str], None]]:
     """Show by name which stage of some work has begun, and at the end how long all took.
 
     Parameters
@@ -71,7 +75,7 @@ def stages(label, weights, silent=False, stream=None):
     progress = Progress(label, 1.0, stream)
     names, total = list(weights), sum(weights.values())
 
-    def begin(name):
+    def begin(name: str) -> None:
         done = sum(weights[earlier] for earlier in names[: names.index(name)])
         if not silent:
             progress.show(done / total, name)
@@ -81,16 +85,16 @@ def stages(label, weights, silent=False, stream=None):
         progress.show(1.0, f"done in {time.monotonic() - progress.start:.1f} s")
 
 
-def warn(text):
+def warn(text: str) -> None:
     """Print a sentence about something doubtful to standard error."""
     print(f"Warning: {text}", file=sys.stderr, flush=True)
 
 
-def announcer(prefix):
+def announcer(prefix: str) -> Callable[[str], None]:
     """A function that prints lines of progress to standard error, with the time since now."""
     start = time.monotonic()
 
-    def tell(text):
+    def tell(text: str) -> None:
         print(f"{prefix}: {time.monotonic() - start:5.0f} s: {text}", file=sys.stderr, flush=True)
 
     return tell

@@ -111,7 +111,7 @@ Arrangement<K> arrange(const std::vector<std::array<int, K>>& elements, const Pa
                 unbroken = end;
             }
             if (end - at < shortestRun) {
-                single.insert(single.end(), order.begin() + at, order.begin() + end);
+                single.insert(single.end(), order.data() + at, order.data() + end);
             } else {
                 for (std::size_t i = at; i < end; ++i) {
                     std::array<int, K> nodes = elements[order[i]];

@@ -47,6 +47,7 @@ inline void addToCorner(const Block& block, const BlockVectors& value, const int
         const Components target = to.from(node[0]);
 #pragma GCC ivdep
         for (int e = 0; e < padded; ++e) {
+            // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): kernels set all paddedCount()
             target.x[e] += sign * x[e];
             target.y[e] += sign * y[e];
             target.z[e] += sign * z[e];
@@ -55,6 +56,7 @@ inline void addToCorner(const Block& block, const BlockVectors& value, const int
         const Components target = to.values;
         const long first = to.first;
         for (int e = 0; e < block.count(); ++e) {
+            // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): of which count() is less
             target.x[node[e] - first] += sign * x[e];
             target.y[node[e] - first] += sign * y[e];
             target.z[node[e] - first] += sign * z[e];

@@ -60,6 +60,7 @@ struct SideTable {
 /// Adds a block's values, lane by lane, to a sum; those of padding must be 0.
 inline void addUp(const Block& block, const double* value, double (&sum)[lanes]) {
     for (int e = 0; e < block.paddedCount(); e += lanes)
+        // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): compute() has set all paddedCount() of them
         for (int lane = 0; lane < lanes; ++lane) sum[lane] += value[e + lane];
 }
 inline double total(const double (&sum)[lanes]) {

@@ -81,6 +81,7 @@ void addProduct(const LinearForces& forces, double k, double c, const NodeVector
     const TautSide* const end = side + forces.sides.size();
     while (side != end) { // sides of the same first node, of which a film has a few in a row, write to it once
         const int a = side->a;
+        // NOLINTNEXTLINE(performance-unnecessary-copy-initialization): writing to y need not read it again
         const Eigen::Vector4d xa = x[a];
         Eigen::Vector4d sum = Eigen::Vector4d::Zero();
         do {

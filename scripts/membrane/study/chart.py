@@ -7,6 +7,7 @@ energy ledger. Writes reference/chart.csv and chart.png.
 """
 
 import statistics
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,6 +21,7 @@ from .verification.variant import Variant
 DURATION, INTERVAL = 0.1, 1e-3  # of the deployments [s]; single curves can be compared so long
 FINEST = {"refine": 4, "dt": 1.25e-6}
 TURNS = 1.5  # of the disks
+Tell = Callable[[str], None]
 
 HEADER = """\
 # Accuracy against time. Made by `scripts/run.sh chart`, on one thread.
@@ -48,7 +50,7 @@ class Point:
     error: float
     pareto: bool = False
 
-    def line(self):
+    def line(self) -> str:
         """Its row of the table."""
         return (
             f'{self.question},{self.path},"{self.part}",{self.mesh},{self.nodes},{self.dt:.4g},'
@@ -64,7 +66,7 @@ class Setting(Variant):
     part: str = ""
 
 
-def grid(quick):
+def grid(quick: bool) -> list[Setting]:
     """Settings of the deployments."""
     steps = {1: (1e-5, 5e-6, 2.5e-6, 1.25e-6), 2: (5e-6, 2.5e-6), 3: (2.5e-6, 1.25e-6)}
     fused = [Setting({"refine": n, "dt": dt}) for n in steps for dt in steps[n]]
@@ -83,7 +85,7 @@ def grid(quick):
     return fused + law2 + parts
 
 
-def deployments(settings, rounds, steps, tell):
+def deployments(settings: list[Setting], rounds: int, steps: int, tell: Tell) -> list[Point]:
     """Points of the questions "deployment" and "ledger"."""
     tell(f"the reference, refine = {FINEST['refine']}")
     finest = deployment.deploy(SailParameters(duration=DURATION, **FINEST), INTERVAL, ledger=False)
@@ -106,7 +108,7 @@ def deployments(settings, rounds, steps, tell):
         energy = np.abs(run.balance).max() / kinetic_energy(p, run) if setting.ledger else np.nan
         errors[id(setting)] = curve, energy, run.positions.shape[1]
     settings = [setting for setting in settings if id(setting) in errors]
-    taken = {id(setting): [] for setting in settings}
+    taken: dict[int, list] = {id(setting): [] for setting in settings}
     for turn in range(rounds):
         tell(f"times, round {turn + 1} of {rounds}")
         for setting in settings:
@@ -123,14 +125,14 @@ def deployments(settings, rounds, steps, tell):
     return points
 
 
-def kinetic_energy(p, run):
+def kinetic_energy(p: SailParameters, run: deployment.Deployment) -> float:
     """Of the sail that turns at p.omega as it is at the release [J]."""
     _, built = deployment.begin(p, run.positions[0])
     radius2 = np.sum(run.positions[0][:, :2] ** 2, axis=1)
     return 0.5 * p.omega**2 * np.sum(built.masses() * radius2)
 
 
-def disks(quick, tell):
+def disks(quick: bool, tell: Tell) -> list[Point]:
     """Points of the question "disk"."""
     points = []
     modes = {name: spinning.DISK_MODES[name] for name in ("(2,0)", "(0,1)", "(3,0)")}
@@ -154,7 +156,7 @@ def disks(quick, tell):
     return points
 
 
-def mark_pareto(points):
+def mark_pareto(points: list[Point]) -> None:
     """Mark the points that none of the same question beats in both cost and error."""
     for point in points:
         rivals = [q for q in points if q.question == point.question and q is not point]
@@ -166,12 +168,12 @@ def mark_pareto(points):
         )
 
 
-def table(points):
+def table(points: list[Point]) -> str:
     """Text of chart.csv."""
     return HEADER + "\n".join([COLUMNS, *(p.line() for p in points)]) + "\n"
 
 
-def measure(quick, rounds, steps, tell):
+def measure(quick: bool, rounds: int, steps: int, tell: Tell) -> list[Point]:
     """All Points of the grid.
 
     Parameters

@@ -6,6 +6,8 @@ modes on finer and finer meshes against the closed form: the error falls with th
 cells. The picture is disk.png.
 """
 
+from pathlib import Path
+
 import numpy as np
 from matplotlib.figure import Figure
 from yade.wrapper import Omega
@@ -21,7 +23,7 @@ MODES = {"saddle, (2, 0)": (2, 0), "umbrella, (0, 1)": (0, 1), "three waves, (3,
 KICK = 1e-5  # m/s
 
 
-def vibrate(cells):
+def vibrate(cells: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Errors (M,) of the frequencies, places (N, 3) [m], triangles, shapes (M, N) as they swing."""
     Omega().reset()
     nodes, triangles = disk_mesh(cells)
@@ -32,8 +34,8 @@ def vibrate(cells):
     sail.place(flat)
 
     r, angle = np.hypot(*flat[:, :2].T), np.arctan2(flat[:, 1], flat[:, 0])
-    shapes = [r**m * np.cos(m * angle) * (1 - 2 * n * r**2) for m, n in MODES.values()]
-    shapes = np.array(shapes).T - sail.masses() @ np.array(shapes).T / sail.masses().sum()
+    modes = [r**m * np.cos(m * angle) * (1 - 2 * n * r**2) for m, n in MODES.values()]
+    shapes = np.array(modes).T - sail.masses() @ np.array(modes).T / sail.masses().sum()
     kick = KICK * shapes.sum(axis=1)[:, None] * [0, 0, 1]
     times, moved, _ = spin(sail, flat, kick, turns=1.5)
     found = np.sqrt(frequencies2(times, moved[:, :, 2], shapes, sail.masses()))
@@ -43,7 +45,7 @@ def vibrate(cells):
     return found / exact - 1, flat, triangles, swinging
 
 
-def draw(errors, run, path):
+def draw(errors: np.ndarray, run: tuple, path: Path) -> None:
     """Draw the errors (R, M) over the cells, and the modes of a run of `vibrate`."""
     figure = Figure(figsize=(10.5, 3.6))
     axes = figure.add_axes((0.07, 0.14, 0.36, 0.82))
@@ -70,6 +72,6 @@ def draw(errors, run, path):
     plots.save(figure, path)
 
 
-def order(error):
+def order(error: np.ndarray) -> float:
     """Order of convergence, from the errors (R,) of the two finest meshes."""
-    return np.log2(error[-2] / error[-1])
+    return float(np.log2(error[-2] / error[-1]))

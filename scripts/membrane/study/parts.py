@@ -5,6 +5,7 @@ Writes reference/parts.csv and prints advice.
 """
 
 import statistics
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,7 +63,7 @@ PARTS = {
 }
 
 
-def answer(part, positions=None):
+def answer(part: Part, positions: np.ndarray | None = None) -> np.ndarray:
     """Rates [-] and phases [deg] at SAMPLES and the largest lag [deg] (NaN: run too short)."""
     p = part.parameters()
     run = deployment.follow(*part.begin(positions), p, INTERVAL)
@@ -71,12 +72,13 @@ def answer(part, positions=None):
     return np.array([*run.rate[at], *phase[at], lag])
 
 
-def costs(parts, rounds, steps):
+def costs(parts: dict, rounds: int, steps: int) -> dict[str, tuple[float, float]]:
     """Time of a step [us] and time for the same simulated time over COMPLETE's, by name.
 
     Each is measured next to COMPLETE in every round; medians over the rounds.
     """
-    steps_taken, ratios = {name: [] for name in parts}, {name: [] for name in parts}
+    steps_taken: dict[str, list] = {name: [] for name in parts}
+    ratios: dict[str, list] = {name: [] for name in parts}
     for _ in range(rounds):
         for name, part in parts.items():
             base, own = COMPLETE.step_time(steps), part.step_time(steps)
@@ -85,14 +87,14 @@ def costs(parts, rounds, steps):
     return {n: (statistics.median(steps_taken[n]), statistics.median(ratios[n])) for n in parts}
 
 
-def line(name, dt, numbers, cost=None):
+def line(name: str, dt: float, numbers: np.ndarray, cost: tuple | None = None) -> str:
     """A row of the table."""
     values = ["" if np.isnan(v) else f"{v:.4g}" for v in numbers]
     values += [f"{cost[0]:.0f}", f"{cost[1]:.2f}"] if cost else ["", ""]
     return ",".join([f'"{name}"', f"{dt:g}", *values])
 
 
-def verdict(name, change, spread, cost):
+def verdict(name: str, change: np.ndarray, spread: np.ndarray, cost: tuple) -> str:
     """A line of advice on one part."""
     rate, phase, lag = abs(change[1]), abs(change[3]), abs(change[4])
     within = rate <= 2 * spread[1] and phase <= 2 * spread[3] and not lag > 2 * spread[4]
@@ -103,7 +105,7 @@ def verdict(name, change, spread, cost):
     return f"{name}: {effect} ({said} twice the spread); {cost[1]:.2f} of the time"
 
 
-def measure(rounds, steps, members, tell):
+def measure(rounds: int, steps: int, members: int, tell: Callable[[str], None]) -> list[str]:
     """Write the table; returns a line of advice on each part.
 
     Parameters

@@ -5,8 +5,9 @@ What they find goes into reference/, and there is the paper's model a second tim
 """
 
 import sys
-from importlib.util import module_from_spec, spec_from_file_location
+from importlib.machinery import SourceFileLoader
 from pathlib import Path
+from types import ModuleType
 
 _above = [p for start in (__file__, sys.argv[0]) for p in Path(start).resolve().parents]
 ROOT = next((folder for folder in _above if (folder / "reference" / "forces.py").is_file()), None)
@@ -14,6 +15,5 @@ if ROOT is None:
     raise ImportError("membrane.study: this needs the sources of the plugin, which are not here")
 REFERENCE, BUILD, SCRIPTS = (ROOT / name for name in ("reference", "build", "scripts"))
 
-_found = spec_from_file_location("reference.forces", REFERENCE / "forces.py")
-paper = module_from_spec(_found)
-_found.loader.exec_module(paper)
+paper = ModuleType("reference.forces")
+SourceFileLoader(paper.__name__, str(REFERENCE / "forces.py")).exec_module(paper)

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Tables of texts for the terminal."""
 
+from collections.abc import Collection, Sequence
 
-def aligned(rows, left):
+
+def aligned(rows: Sequence[Sequence[str]], left: Collection[int]) -> list[str]:
     """Lines of a table of texts (rows of as many), columns `left` to the left, others to the right.
 
     Parameters

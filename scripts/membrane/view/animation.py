@@ -9,6 +9,7 @@ import contextlib
 import os
 import shutil
 import subprocess
+from collections.abc import Iterator, Sequence
 from math import cos, radians, sin
 from pathlib import Path
 
@@ -26,7 +27,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderWindow, vtkTextActor
 
 from ..files import replacing
 from ..results import own
-from ..results.finished_run import read_run
+from ..results.finished_run import FinishedRun, read_run
 from ..results.output import cell_array, read_frame
 from .plots import FILM, SPOOL, VIEW
 
@@ -47,7 +48,7 @@ MARGIN = 1.1  # of the view beyond what it shows
 TIP_RADIUS = 0.014  # as drawn, over half the view's diagonal; a tip mass has no size in the model
 
 
-def animate(folder):
+def animate(folder: Path | str) -> list[Path]:
     """Render `folder`/sail.mp4 and sail.gif from `folder`/shapes and summary.json.
 
     Parameters
@@ -80,7 +81,7 @@ def animate(folder):
 
 
 @contextlib.contextmanager
-def virtual_display():
+def virtual_display() -> Iterator[None]:
     """An X server without a screen, as DISPLAY, as long as the context lasts."""
     reading, writing = os.pipe()
     command = ["Xvfb", "-displayfd", str(writing), "-screen", "0", "1280x1024x24"]
@@ -112,13 +113,9 @@ class Stage:
     """The scene in VTK: sail, tethers, tip masses, spool, time and scale bar.
 
     The projection is parallel, so that the scale bar holds for all lengths across the view.
-
-    Parameters
-    ----------
-    run : FinishedRun
     """
 
-    def __init__(self, run):
+    def __init__(self, run: FinishedRun) -> None:
         self.run, self.shapes = run, run.shapes
         times = [time for time, _ in run.shapes]
         self.turned = run.turned(times)
@@ -147,7 +144,7 @@ class Stage:
         if pace(times):
             self._add_text(pace(times), 22, (0.03, 0.85))
 
-    def picture(self, i):
+    def picture(self, i: int) -> np.ndarray:
         """Shape number `i` as an image (height, width, 3) of bytes, top row first."""
         time, path = self.shapes[i]
         positions, _ = read_frame(path)
@@ -164,7 +161,7 @@ class Stage:
         self.window.GetPixelData(0, 0, width - 1, height - 1, 0, pixels, 0)
         return vtk_to_numpy(pixels).reshape(height, width, 3)[::-1]
 
-    def close(self):
+    def close(self) -> None:
         """Give the window back; the X server must not end before."""
         self.window.Finalize()
 
@@ -320,7 +317,7 @@ class Stage:
         return actor
 
 
-def pace(times):
+def pace(times: Sequence[float]) -> str:
     """How much slower or faster than reality a film of shapes at `times` [s] is, in words.
 
     Rounded, since intervals are whole steps; empty where it is as fast, or has one shape.
@@ -335,20 +332,9 @@ def _encode(path, pictures):
     """Write an MP4 film of images (height, width, 3) of bytes."""
     width, height = SIZE
     source = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-r", str(RATE)]
-    target = [
-        "-c:v",
-        "libx264",
-        "-preset",
-        "fast",
-        "-crf",
-        "18",
-        "-pix_fmt",
-        "yuv420p",
-        "-movflags",
-        "+faststart",
-        "-f",
-        "mp4",
-    ]
+    target = (
+        "-c:v libx264 -preset fast -crf 18 -pix_fmt yuv420p -movflags +faststart -f mp4".split()
+    )
     encoder = subprocess.Popen(
         _ffmpeg(*source, "-i", "-", *target, path),
         stdin=subprocess.PIPE,
@@ -357,6 +343,7 @@ def _encode(path, pictures):
     )
     try:
         with contextlib.suppress(BrokenPipeError):  # its message tells more
+            assert encoder.stdin
             for picture in pictures:
                 encoder.stdin.write(picture.tobytes())
         _, said = encoder.communicate()
@@ -365,8 +352,8 @@ def _encode(path, pictures):
         encoder.communicate()
         raise
     if encoder.returncode:
-        said = said.decode(errors="replace").strip()
-        raise RuntimeError(f"ffmpeg failed on {path}: {said[-300:]}")
+        words = said.decode(errors="replace").strip()
+        raise RuntimeError(f"ffmpeg failed on {path}: {words[-300:]}")
 
 
 def _write_gif(film, gif, pictures):

@@ -4,13 +4,19 @@
 Figures are drawn to files only; no window system is needed.
 """
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
+from numpy.typing import ArrayLike
 
 from ..files import replacing
+from ..measures import Plot
+from ..mesh import SailMesh
 
 FILM = np.array([0.98, 0.80, 0.42])
 SPOOL = np.array([0.45, 0.48, 0.55])
@@ -19,7 +25,7 @@ VIEW = {"elev": 32, "azim": -65}
 DPI = 150
 
 
-def save(figure, path, **options):
+def save(figure: Figure, path: Path | str, **options: Any) -> None:
     """Write a matplotlib Figure whole or not at all; the ending of `path` gives the format.
 
     `options` are those of `savefig`, of which `dpi` is DPI by default.
@@ -28,7 +34,9 @@ def save(figure, path, **options):
         figure.savefig(part, **{"format": Path(path).suffix[1:], "dpi": DPI, **options})
 
 
-def plot_history(history, plots, path):
+def plot_history(
+    history: Mapping[str, np.ndarray], plots: Sequence[Plot], path: Path | str
+) -> None:
     """Plots of a history over time, one above the other.
 
     Parameters
@@ -67,7 +75,9 @@ def _draw_lines(axes, history, plot):
     axes.margins(x=0)
 
 
-def plot_shapes(frames, mesh, path, times):
+def plot_shapes(
+    frames: ArrayLike, mesh: SailMesh, path: Path | str, times: Sequence[float]
+) -> None:
     """Views of the sail at up to six times, all from the same camera and at the same scale.
 
     Parameters
@@ -84,7 +94,13 @@ def plot_shapes(frames, mesh, path, times):
     _plot_views(frames, times, path, lambda axes, x, radius: draw_sail(axes, mesh, x, radius))
 
 
-def plot_sheets(frames, triangles, marked, path, times):
+def plot_sheets(
+    frames: ArrayLike,
+    triangles: np.ndarray,
+    marked: np.ndarray,
+    path: Path | str,
+    times: Sequence[float],
+) -> None:
     """Views of any sheet at up to six times, all from the same camera and at the same scale.
 
     Parameters
@@ -101,7 +117,7 @@ def plot_sheets(frames, triangles, marked, path, times):
         Times [s].
     """
 
-    def draw(axes, positions, radius):
+    def draw(axes: Axes, positions: np.ndarray, radius: float) -> None:
         _draw_faces(axes, positions[triangles])
         _draw_dots(axes, positions[marked])
         _set_view(axes, radius, zoom=1.6)
@@ -126,7 +142,7 @@ def _plot_views(frames, times, path, draw):
     save(figure, path)
 
 
-def draw_sail(axes, mesh, positions, radius):
+def draw_sail(axes: Axes, mesh: SailMesh, positions: np.ndarray, radius: float) -> None:
     """Draw a SailMesh, shaded, with tips, tethers and spool; nodes at `positions` (N, 3) [m].
 
     The 3-D `axes` reach to `radius` [m] from the axis of spin. The spool is as tall as the strips:
@@ -140,7 +156,7 @@ def draw_sail(axes, mesh, positions, radius):
     _set_view(axes, radius)
 
 
-def draw_scale_bar(axes, radius):
+def draw_scale_bar(axes: Axes, radius: float) -> None:
     """Draw a bar below a sail that reaches to `radius` [m]: 1, 2 or 5 times a power of ten long.
 
     It stands in the plane through the origin across the view, and holds for lengths there.

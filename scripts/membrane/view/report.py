@@ -9,6 +9,7 @@ import base64
 import json
 from dataclasses import fields as parameter_fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -40,7 +41,7 @@ class NoViewer(RuntimeError):
     """The viewer has not been built."""
 
 
-def write_report(folder):
+def write_report(folder: Path | str) -> Path:
     """Write `folder`/report.html from the other results in this folder.
 
     Parameters
@@ -72,7 +73,7 @@ def write_report(folder):
     return page
 
 
-def run_data(folder):
+def run_data(folder: Path | str) -> dict[str, Any]:
     """What the page shows of a run, as plain lists, numbers and packed arrays (see `_pack`)."""
     run = read_run(folder)
     triangles = len(run.triangles)
@@ -113,7 +114,7 @@ def _frame(path, nodes, triangles):
     return positions, data
 
 
-def thinned(shapes, per_shape, largest=LARGEST):
+def thinned(shapes: list, per_shape: int, largest: float = LARGEST) -> list:
     """Every n-th of the `shapes`, the last one included, so that the page does not grow too large.
 
     Parameters

@@ -6,16 +6,20 @@ script, so that YADE's prompt takes care of the window.
 """
 
 import time
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from yade import runtime
 from yade import wrapper as yade
 
+from ..scene import MembraneScene
+
 PATIENCE = 60.0  # s, for a window or a picture that never comes
 
 
-def require_display():
+def require_display() -> None:
     """Raise RuntimeError, in one sentence, if YADE runs without a display."""
     if not runtime.hasDisplay:
         raise RuntimeError(
@@ -23,7 +27,13 @@ def require_display():
         )
 
 
-def show(membrane=None, *, direction=(0.35, 0.55, -0.75), size=(900, 700), **attributes):
+def show(
+    membrane: yade.Membrane | None = None,
+    *,
+    direction: Sequence[float] = (0.35, 0.55, -0.75),
+    size: tuple[int, int] = (900, 700),
+    **attributes: Any,
+) -> "Window":
     """Open YADE's 3D view, or take the one that is open, with membranes as coloured triangles.
 
     Parameters
@@ -36,10 +46,6 @@ def show(membrane=None, *, direction=(0.35, 0.55, -0.75), size=(900, 700), **att
         Of the window [pixels].
     **attributes
         Of GlExtra_Membrane: strainRange, drawSides, hideNodes, …
-
-    Returns
-    -------
-    Window
 
     Raises
     ------
@@ -74,17 +80,17 @@ class Window:
         Its attributes may be changed at any time.
     """
 
-    def __init__(self, view, drawer):
+    def __init__(self, view: Any, drawer: Any) -> None:
         self.view, self.drawer = view, drawer
 
     @property
-    def is_open(self):
+    def is_open(self) -> bool:
         """Whether the user has left it open."""
         from yade import qt
 
         return bool(qt.views())
 
-    def look(self, corners, direction):
+    def look(self, corners: np.ndarray, direction: Sequence[float]) -> None:
         """Look along `direction` (3,) at a box with two opposite `corners` (2, 3) [m]."""
         centre, radius = np.mean(corners, axis=0), 0.5 * np.linalg.norm(np.ptp(corners, axis=0))
         along = np.array(direction, dtype=float) / np.linalg.norm(direction)
@@ -93,7 +99,7 @@ class Window:
         self.view.viewDir = along.tolist()
         self.view.fitSphere(centre.tolist(), radius)
 
-    def refresh(self, seconds=0.0):
+    def refresh(self, seconds: float = 0.0) -> None:
         """Let it answer the user and draw, for at least `seconds` [s]."""
         from PyQt5.QtWidgets import QApplication
 
@@ -103,13 +109,13 @@ class Window:
             QApplication.processEvents()
             time.sleep(0.01)
 
-    def redraw(self):
+    def redraw(self) -> None:
         """Wait until the present state has been drawn."""
         # The one under way may have begun before.
         wanted = self.drawer.frames + 2
         self._refresh_until(lambda: self.drawer.frames >= wanted or self.drawer.dead, "no picture")
 
-    def snapshot(self, path):
+    def snapshot(self, path: Path | str) -> Path:
         """Write a picture of the present state, .png or as `path` ends; returns the Path.
 
         Raises
@@ -128,12 +134,12 @@ class Window:
             raise OSError(f"{path}: could not be written")
         return Path(path)
 
-    def wait(self):
+    def wait(self) -> None:
         """Wait until the user closes it."""
         while self.is_open:
             self.refresh(0.05)
 
-    def close(self):
+    def close(self) -> None:
         """Close it."""
         if self.is_open:
             self.view.close()
@@ -154,11 +160,12 @@ class Watch:
     Drawing takes no more than half of the time, however slow it is.
     """
 
-    def __init__(self):
+    def __init__(self) -> None:
         require_display()
-        self.window, self._next = None, 0.0
+        self.window: Window | None = None
+        self._next = 0.0
 
-    def __call__(self, sail):
+    def __call__(self, sail: MembraneScene) -> None:
         """Look at a MembraneScene."""
         if self.window is None:
             self.window = show(sail.membrane)
@@ -169,7 +176,7 @@ class Watch:
         end = time.monotonic()
         self._next = end + max(0.02, end - begin)
 
-    def wait(self):
+    def wait(self) -> None:
         """Wait until the user closes the window."""
         if self.window:
             self.window.wait()
@@ -188,5 +195,5 @@ def _extent(membranes):
     for membrane in membranes:
         places = [bodies[i].state.pos for i in membrane.bodyIds]
         points += [np.array(places)] if places else []
-    points = np.concatenate(points)
-    return np.array([points.min(axis=0), points.max(axis=0)])
+    every = np.concatenate(points)
+    return np.array([every.min(axis=0), every.max(axis=0)])

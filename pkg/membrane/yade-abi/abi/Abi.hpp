@@ -58,7 +58,7 @@ template <class Class> struct Layout;
 // A class derived from Class starts with its first member at `offset`, within padding that sizeof(Class) counts.
 #define YADE_ABI_TAIL(Class, offset)                                                                                   \
     namespace abi {                                                                                                    \
-    struct After##Class : Class {                                                                                      \
+    struct After##Class : Class { /* NOLINT(bugprone-macro-parentheses): a base takes none */                          \
         char first;                                                                                                    \
     };                                                                                                                 \
     }                                                                                                                  \

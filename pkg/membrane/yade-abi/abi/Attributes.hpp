@@ -31,7 +31,7 @@
 #define YADE_ABI_INITIALIZE(s, data, init) BOOST_PP_TUPLE_ELEM(2, 0, init)(BOOST_PP_TUPLE_ELEM(2, 1, init))
 #define YADE_ABI_SAVE(r, archive, attr)                                                                                \
     if (!(YADE_ABI_FLAGS(attr) & ::yade::Attr::noSave))                                                                \
-        archive& ::boost::serialization::make_nvp(YADE_ABI_NAME_TEXT(attr), this->YADE_ABI_NAME(attr));
+        (archive) & ::boost::serialization::make_nvp(YADE_ABI_NAME_TEXT(attr), this->YADE_ABI_NAME(attr));
 #define YADE_ABI_SET(r, data, attr)                                                                                    \
     if (key == YADE_ABI_NAME_TEXT(attr)) {                                                                             \
         ::yade::abi::Changes::set(this->YADE_ABI_NAME(attr),                                                           \
@@ -40,7 +40,7 @@
     }
 #define YADE_ABI_TO_DICT(r, dict, attr)                                                                                \
     if (!(YADE_ABI_FLAGS(attr) & ::yade::Attr::hidden))                                                                \
-        dict[YADE_ABI_NAME_TEXT(attr)] = ::boost::python::object(this->YADE_ABI_NAME(attr));
+        (dict)[YADE_ABI_NAME_TEXT(attr)] = ::boost::python::object(this->YADE_ABI_NAME(attr));
 #define YADE_ABI_TO_PYTHON(r, Class, attr)                                                                             \
     ::yade::abi::defineAttribute<YADE_ABI_FLAGS(attr)>(_classObj, YADE_ABI_NAME_TEXT(attr),                            \
                                                        &Class::YADE_ABI_NAME(attr), YADE_ABI_FULL_DOC(attr));
@@ -199,7 +199,7 @@ template <class Class> shared_ptr<Class> construct(py::tuple args, py::dict keyw
 template <class Class> py::object keywordConstructor() {
     const py::object init = py::make_constructor(&construct<Class>);
     return py::raw_function(
-        [init](py::tuple args, py::dict keywords) {
+        [init](const py::tuple& args, const py::dict& keywords) {
             const py::object self(args[0]);
             return py::object(init(self, py::tuple(args.slice(1, py::len(args))), keywords));
         },

@@ -5,8 +5,11 @@ Each module named in scripts/bench.py has `measure(settings)`, which returns a l
 What is compared is measured in one run, turn by turn, because machines drift: `turns` does it.
 """
 
+from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass
 from math import isfinite
+
+from .quiet import Quiet
 
 FUSED, LAW2 = "fused", "law2"
 PATHS = (FUSED, LAW2)  # of the plugin, as scene.set_engines knows them
@@ -31,14 +34,14 @@ class Settings:
 
     rounds: int
     quick: bool
-    quiet: object
-    tell: object
+    quiet: Quiet
+    tell: Callable[[str], None]
 
-    def work(self, node_steps):
+    def work(self, node_steps: float) -> float:
         """Nodes times steps of a turn."""
         return node_steps / 5 if self.quick else node_steps
 
-    def sizes(self, sides):
+    def sizes(self, sides: Iterable[int]) -> list[int]:
         """Those of the `sides` (nodes along an edge of a sheet) that are to be measured."""
         return [side for side in sides if not self.quick or side <= 100]
 
@@ -79,7 +82,7 @@ class Entry:
     bound: str | None = None
     other_work: float | None = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if (self.target is None) != (self.bound is None):
             raise ValueError(f"{self.name}: target and bound go together")
         if self.bound not in (None, AT_MOST, AT_LEAST):
@@ -88,13 +91,13 @@ class Entry:
             raise ValueError(f"{self.name}: value = {self.value} must be finite")
 
     @property
-    def holds(self):
+    def holds(self) -> bool | None:
         """Whether the target is met; None if there is none."""
         if self.target is None:
             return None
         return self.value <= self.target if self.bound == AT_MOST else self.value >= self.target
 
-    def as_dict(self):
+    def as_dict(self) -> dict:
         """All attributes and `holds`, ready for JSON; without target only what is there."""
         known = {**asdict(self), "holds": self.holds}
         return {key: value for key, value in known.items() if value is not None or key == "nodes"}

@@ -9,14 +9,14 @@ import time
 from pathlib import Path
 
 from ..sources import SCRIPTS
-from . import AT_MOST, FUSED, PATHS, Entry
+from . import AT_MOST, FUSED, PATHS, Entry, Settings
 
 SCRIPT = SCRIPTS / "deploy.py"
 MOST = 6.0  # [s], all together
 STAGES = {"build": "fold and build", "spin_up": "spin-up", "run": "run of 1 s"}
 
 
-def deploy(path):
+def deploy(path: str) -> tuple[dict, float, float]:
     """Deploy the sail at the defaults.
 
     Returns
@@ -45,18 +45,18 @@ def deploy(path):
         return {**summary, "wall_time": times}, wall, processor_time() - used
 
 
-def processor_time():
+def processor_time() -> float:
     """Processor time [s] of all child processes that have ended."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
 
-def measure(settings):
+def measure(settings: Settings) -> list[Entry]:
     """Entries of the wall time of each stage and of all."""
     return [entry for path in PATHS for entry in measure_path(path, settings)]
 
 
-def measure_path(path, settings):
+def measure_path(path: str, settings: Settings) -> list[Entry]:
     """Entries for one path."""
     settings.tell(f"the paper's deployment, path {path}")
     summary, whole, used = settings.quiet.measure(lambda: deploy(path))
@@ -66,7 +66,7 @@ def measure_path(path, settings):
         for stage, text in STAGES.items()
     ]
     total = sum(wall[stage] for stage in STAGES)
-    wanted = {"target": MOST, "bound": AT_MOST} if path == FUSED else {}
+    wanted: dict = {"target": MOST, "bound": AT_MOST} if path == FUSED else {}
     found.append(Entry(f"deployment, {path}: total", total, "s", nodes, **wanted))
     for text, value in {"wall": whole, "processor": used}.items():
         name = f"deployment, {path}: {text} time with YADE's start and end"

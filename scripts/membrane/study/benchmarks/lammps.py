@@ -5,11 +5,12 @@ import os
 import re
 import shutil
 import subprocess
+from pathlib import Path
 
 import numpy as np
 from membrane.geometry import side_lengths
 
-from .sheet import SPACING
+from .sheet import SPACING, Sheet
 
 PROGRAM = "lmp"
 # Of the plugin's default film, as if each spring were a strip as wide as it is long.
@@ -42,7 +43,7 @@ run {steps}
 """
 
 
-def input_text(steps):
+def input_text(steps: int) -> str:
     """LAMMPS commands that warm up, then run `steps` steps of the sheet in sheet.data."""
     diagonal = 2**0.5 * SPACING
     return INPUT.format(
@@ -56,7 +57,7 @@ def input_text(steps):
     )
 
 
-def write_data(sheet, path):
+def write_data(sheet: Sheet, path: Path) -> None:
     """Write nodes and sides of a Sheet as LAMMPS data; bonds of type 1 are sides of squares."""
     sides = sheet.sides()
     kinds = 1 + (side_lengths(sheet.nodes, sides) > 1.2 * SPACING)
@@ -75,12 +76,12 @@ def write_data(sheet, path):
         np.savetxt(file, np.column_stack([1 + np.arange(len(sides)), kinds, 1 + sides]), fmt="%d")
 
 
-def available():
+def available() -> bool:
     """Whether LAMMPS can be run."""
     return shutil.which(PROGRAM) is not None
 
 
-def version():
+def version() -> str | None:
     """The version of LAMMPS; None if there is no LAMMPS."""
     if not available():
         return None
@@ -89,7 +90,7 @@ def version():
     return found[1] if found else "unknown"
 
 
-def loop_time(output, threads):
+def loop_time(output: str, threads: int) -> float:
     """Time a step [s] of the last run in what LAMMPS printed.
 
     It is wall time; on one thread processor time, which other work on the machine lengthens less.
@@ -102,7 +103,7 @@ def loop_time(output, threads):
     return float(seconds) / int(steps) * min(1.0, float(used[-1]) / 100)
 
 
-def run(folder, steps, threads):
+def run(folder: Path, steps: int, threads: int) -> str:
     """Run the sheet whose sheet.data is in `folder`; returns what LAMMPS printed.
 
     Debian's LAMMPS has no threads (package OPENMP): two of them are two processes under MPI.

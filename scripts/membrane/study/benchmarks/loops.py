@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Path law2: the plugin's functors and its engine beside YADE's own sphere contacts."""
 
+from functools import partial
+
 from membrane.mesh import sail_mesh
 
-from . import AT_MOST
+from . import AT_MOST, Entry, Settings
 from .turns import entry, ratio_entry, take_turns
 from .workers import workers
 
@@ -11,7 +13,7 @@ MOST_LOOP, MOST_ENGINE = 0.6, 0.3
 STEPS = 2000
 
 
-def measure(settings):
+def measure(settings: Settings) -> list[Entry]:
     """Entries for the sail as the paper has it and with a finer mesh."""
     found = []
     for refine in (1,) if settings.quick else (1, 2):
@@ -19,7 +21,7 @@ def measure(settings):
     return found
 
 
-def measure_sail(refine, settings):
+def measure_sail(refine: int, settings: Settings) -> list[Entry]:
     """Entries for the sail in one fineness."""
     nodes = len(sail_mesh(refine=refine).nodes)
     settings.tell(f"functors on the sail of {nodes} nodes")
@@ -28,7 +30,7 @@ def measure_sail(refine, settings):
         name: {"situation": name, "refine": refine} for name in ("springs", "contacts", "folded")
     }
     with workers(plans) as started:
-        asked = {name: lambda one=one: one.measure(steps) for name, one in started.items()}
+        asked = {name: partial(one.measure, steps) for name, one in started.items()}
         answers = take_turns(asked, settings.rounds, settings.quiet)
     springs, contacts = ([a["seconds"] for a in answers[n]] for n in ("springs", "contacts"))
     engine, loop = ([a[n] for a in answers["folded"]] for n in ("engine", "loop"))
@@ -39,24 +41,12 @@ def measure_sail(refine, settings):
         "MembraneForceEngine, all forces, folded sail": engine,
     }
     entries = [entry(n, [1e9 * t for t in times[n]], "ns a side and step", nodes) for n in times]
-    found = [
-        *entries,
-        ratio_entry(
-            "membrane's functors over YADE's sphere contact",
-            springs,
-            contacts,
-            nodes,
-            target=MOST_LOOP,
-            bound=AT_MOST,
-        ),
-        ratio_entry(
-            "MembraneForceEngine over YADE's sphere contact",
-            engine,
-            contacts,
-            nodes,
-            target=MOST_ENGINE,
-            bound=AT_MOST,
-        ),
-        ratio_entry("MembraneForceEngine over membrane's own functors", engine, loop, nodes),
-    ]
-    return settings.quiet.mark(found)
+    over = "over YADE's sphere contact"
+    for name, taken, most in (
+        ("membrane's functors", springs, MOST_LOOP),
+        ("MembraneForceEngine", engine, MOST_ENGINE),
+    ):
+        wanted: dict = {"target": most, "bound": AT_MOST}
+        entries.append(ratio_entry(f"{name} {over}", taken, contacts, nodes, **wanted))
+    name = "MembraneForceEngine over membrane's own functors"
+    return settings.quiet.mark([*entries, ratio_entry(name, engine, loop, nodes)])

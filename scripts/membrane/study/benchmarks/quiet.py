@@ -5,12 +5,16 @@ import os
 import resource
 import statistics
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import TypeVar
 
 LIMIT = 0.15  # cores busy with something else, below which a machine is quiet
 LOOK = 0.5  # [s]; how long to look whether it is
 TICKS = os.sysconf("SC_CLK_TCK")  # a second, in /proc
+
+Taken = TypeVar("Taken")
 
 
 def _busy():
@@ -43,10 +47,10 @@ def _own():
 class OtherWork:
     """What else the machine does, from the making of this object on."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.start = time.monotonic(), _busy(), _own()
 
-    def cores(self):
+    def cores(self) -> float:
         """Cores that were busy with something else since, mean."""
         clock, busy, own = self.start
         passed = max(time.monotonic() - clock, 1e-9)
@@ -67,9 +71,10 @@ class Quiet:
         Time [s] that may still be lost by that; afterwards every measurement counts.
     """
 
-    def __init__(self, tell=None):
+    def __init__(self, tell: Callable[[str], None] | None = None) -> None:
         self.patience, self.tell = 0.0, tell
-        self.accepted = []  # cores busy with something else during each measurement that counts
+        # Cores busy with something else during each measurement that counts.
+        self.accepted: list[float] = []
 
     def _lose(self, start):
         """Count the time since `start` as lost."""
@@ -86,7 +91,7 @@ class Quiet:
                 return
             self._lose(start)
 
-    def measure(self, take, wait=True):
+    def measure(self, take: Callable[[], Taken], wait: bool = True) -> Taken:
         """What the function `take` returns, taken while the machine was quiet if `wait`."""
         while True:
             if wait:
@@ -98,7 +103,7 @@ class Quiet:
                 return taken
             self._lose(start)
 
-    def mark(self, entries):
+    def mark(self, entries: list) -> list:
         """List of Entry, with the other work during what was accepted since the last call."""
         busy, self.accepted = round(statistics.fmean(self.accepted), 2), []
         return [replace(entry, other_work=busy) for entry in entries]

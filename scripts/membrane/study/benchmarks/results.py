@@ -3,12 +3,14 @@
 
 import os
 import subprocess
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from membrane.files import read_object, write_json
 from membrane.study.text_table import aligned
 
 from ..sources import ROOT
+from . import Entry
 
 MEANING = {
     "value": "median over the rounds, in which all that is compared takes turns",
@@ -28,7 +30,7 @@ MEANING = {
 MADE_FROM = ("pkg", "scripts", "CMakeLists.txt")  # what decides on the speed
 
 
-def commit():
+def commit() -> str:
     """The commit of the sources, with "+" if they differ from it; "unknown" outside git."""
     try:
         head = _git("rev-parse", "--short=12", "HEAD").strip()
@@ -44,23 +46,23 @@ def _git(*arguments):
     return done.stdout
 
 
-def processor():
+def processor() -> str:
     """Model of the processor and how many cores of it there are."""
     text = Path("/proc/cpuinfo").read_text(encoding="utf-8")
     models = [line.split(":", 1)[1].strip() for line in text.splitlines() if "model name" in line]
     return f"{models[0] if models else 'unknown'}, {os.cpu_count()} cores"
 
 
-def rounded(number):
+def rounded(number: float) -> float:
     """A number to four digits."""
     return float(f"{number:.4g}")
 
 
-def as_rows(module, entries, made_of):
+def as_rows(module: str, entries: Iterable[Entry], made_of: str) -> list[dict]:
     """Entries of one module, measured at the commit `made_of`, ready for JSON."""
     rows = []
     for one in entries:
-        row = {"module": module, **one.as_dict(), "commit": made_of}
+        row: dict = {"module": module, **one.as_dict(), "commit": made_of}
         row["value"] = rounded(row["value"])
         if "best" in row:
             row["best"] = rounded(row["best"])
@@ -70,7 +72,7 @@ def as_rows(module, entries, made_of):
     return rows
 
 
-def save(path, module, rows, made_with, order):
+def save(path: Path, module: str, rows: list[dict], made_with: dict, order: Sequence[str]) -> None:
     """Put what one module found into the file, beside what the others did, in their `order`.
 
     Parameters
@@ -99,7 +101,7 @@ def save(path, module, rows, made_with, order):
     write_json(path, content)
 
 
-def table(module, entries):
+def table(module: str, entries: Iterable[Entry]) -> list[str]:
     """Lines of text that show a list of Entry of a module."""
     rows = [("", "nodes", "threads", "value", "best", "spread", "other", "unit", "target", "")]
     for one in entries:

@@ -15,15 +15,18 @@ import statistics
 import subprocess
 import tempfile
 from collections import Counter
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 from membrane.view.plots import save
 
 from ..sources import BUILD, REFERENCE, ROOT
-from . import cases
+from . import Entry, Settings, cases
 from .sheet import SIDES
 from .turns import entry, take_turns
 
@@ -60,6 +63,8 @@ KERNELS = {  # the functions that work on them
 }
 TOLERANCE = 0.01  # of a kernel's count: sums over whole vectors after each block are not in it
 
+Counts = dict[tuple[str, str], Counter]  # runs by address, by object file and function
+
 WARM, STEPS = 2, 2  # in valgrind, which repeats itself
 INSTRUCTION = re.compile(r" *([0-9a-f]+):\t(\S+)(?: +(\S+))?")
 ARITHMETIC = re.compile(r"v?(add|sub|mul|div|sqrt|fn?m(?:add|sub)\d+)([ps])d")
@@ -87,53 +92,54 @@ class Level:
     probe: int
 
 
-def levels(folder=Path("/sys/devices/system/cpu/cpu0/cache")):
+def levels(folder: Path = Path("/sys/devices/system/cpu/cpu0/cache")) -> list[Level]:
     """List of Level, from the fastest to the memory."""
     found = []
     for cache in sorted(folder.glob("index*")):
-        kind, level, size, line, ways = (
+        kind, *numbers = (
             (cache / name).read_text(encoding="utf-8").strip()
             for name in ("type", "level", "size", "coherency_line_size", "ways_of_associativity")
         )
         if kind != "Instruction":
-            found.append((int(level), 1024 * int(size.rstrip("K")), int(line), int(ways)))
+            number, kibibytes, line, ways = (int(number.rstrip("K")) for number in numbers)
+            found.append((number, 1024 * kibibytes, line, ways))
     if len(found) < 2:
         raise RuntimeError(f"{folder} does not tell the sizes of the caches")
     caches, inner = [], 0
-    for level, size, line, ways in sorted(found):
+    for number, size, line, ways in sorted(found):
         # Well inside this cache and outside the one before.
         probe = min(size // 2, max(4 * inner, size // 8))
-        caches.append(Level(f"L{level}", size, line, ways, probe))
+        caches.append(Level(f"L{number}", size, line, ways, probe))
         inner = size
     return [*caches, Level("memory", 0, 0, 0, 16 * inner)]
 
 
-def level_of(size, known):
+def level_of(size: int, known: Sequence[Level]) -> Level:
     """The first Level that holds `size` bytes."""
     return next(level for level in known if level.size >= size or level is known[-1])
 
 
-def operations(counts, what):
+def operations(counts: dict[str, int], what: dict[str, int]) -> int:
     """How many operations `what` (a number for one element) makes for `counts` of elements."""
     return sum(number * counts[element] for element, number in what.items())
 
 
-def flops(counts, everything):
+def flops(counts: dict[str, int], everything: bool) -> int:
     """Floating-point operations of a step on a sheet with `counts` of elements."""
     return operations(counts, FLOPS) + everything * FLOPS_IN_AIR * counts["nodes"]
 
 
-def attainable(intensity, bandwidth, peak):
+def attainable(intensity: float, bandwidth: float, peak: float) -> float:
     """The roof [flop/s] over an intensity [flop/byte]; `bandwidth` [byte/s], `peak` [flop/s]."""
     return min(peak, bandwidth * intensity)
 
 
-def answer(command):
+def answer(command: Sequence) -> dict:
     """What a command prints, as JSON."""
     return json.loads(said(command))
 
 
-def said(command):
+def said(command: Sequence) -> str:
     """What a command prints."""
     done = subprocess.run(list(map(str, command)), capture_output=True, encoding="utf-8")
     if done.returncode:
@@ -141,7 +147,7 @@ def said(command):
     return done.stdout
 
 
-def build():
+def build() -> None:
     """Compile the program, and see that valgrind is there."""
     for tool, package in {"valgrind": "valgrind", "objdump": "binutils"}.items():
         if not shutil.which(tool):
@@ -150,7 +156,7 @@ def build():
     said(["cmake", "--build", BUILD, "--target", PROGRAM.name])
 
 
-def sheet(side, everything, warm, steps):
+def sheet(side: int, everything: bool, warm: int, steps: int) -> list:
     """Command that runs a sheet."""
     return [PROGRAM, "sheet", side, int(everything), warm, steps]
 
@@ -159,7 +165,7 @@ def sheet(side, everything, warm, steps):
 # Instructions, misses and operations, by valgrind.
 
 
-def executed(lines):
+def executed(lines: Iterable[str]) -> tuple[dict[str, int], Counts]:
     """Instructions that a callgrind file tells of.
 
     Parameters
@@ -175,12 +181,16 @@ def executed(lines):
         For each pair of object file and function a Counter of the runs of the instruction at
         each address.
     """
-    events, totals, counts, file, current, inclusive = [], [], {}, None, None, False
+    events: list[str] = []
+    totals: list[int] = []
+    counts: Counts = {}
+    current: Counter = Counter()
+    file, inclusive = "", False
     for line in lines:
         if line.startswith("events:"):
             events = line.split()[1:]
         elif line.startswith("totals:"):
-            totals = map(int, line.split()[1:])
+            totals = list(map(int, line.split()[1:]))
         elif line.startswith("ob="):
             file = line[3:].strip()
         elif line.startswith("fn="):
@@ -195,13 +205,13 @@ def executed(lines):
     return dict(zip(events, totals)), counts
 
 
-def arithmetic(listing):
+def arithmetic(listing: Iterable[str]) -> dict[int, int]:
     """Operations on doubles in the instruction at each address, from what objdump lists."""
     found = {}
     for line in listing:
         parts = INSTRUCTION.match(line)
-        known = parts and ARITHMETIC.fullmatch(parts[2])
-        if known:
+        known = ARITHMETIC.fullmatch(parts[2]) if parts else None
+        if parts and known:
             registers = parts[3] or ""
             packed = 8 if "zmm" in registers else 4 if "ymm" in registers else 2
             lanes = packed if known[2] == "p" else 1
@@ -209,7 +219,7 @@ def arithmetic(listing):
     return found
 
 
-def operations_of(path, counts):
+def operations_of(path: Path | str, counts: Counts) -> dict[str, int]:
     """Operations on doubles in the functions of an object file, by name, from `executed`."""
     known = arithmetic(said(["objdump", "-d", "--no-show-raw-insn", path]).splitlines())
     return {
@@ -219,14 +229,8 @@ def operations_of(path, counts):
     }
 
 
-def simulate(side, everything, known):
+def simulate(side: int, everything: bool, known: Sequence[Level]) -> dict:
     """Instructions, misses and operations of a step.
-
-    Parameters
-    ----------
-    side : int
-    everything : bool
-    known : list of Level
 
     Returns
     -------
@@ -235,20 +239,9 @@ def simulate(side, everything, known):
         "sheet": what the program said.
     """
     first, *outer = known[:-1]
-    misses, events = {}, {}
+    misses = {}
     for last in outer:  # valgrind knows two levels at a time
-        with tempfile.TemporaryDirectory() as folder:
-            file = Path(folder) / "callgrind.out"
-            told = answer(
-                ["valgrind", "--tool=callgrind", "--cache-sim=yes", "--instr-atstart=no"]
-                + ["--dump-instr=yes", "--dump-line=no", "--compress-pos=no"]
-                + ["--compress-strings=no", f"--callgrind-out-file={file}"]
-                + [f"--D1={first.size},{first.ways},{first.line}"]
-                + [f"--LL={last.size},{last.ways},{last.line}"]
-                + sheet(side, everything, WARM, STEPS)
-            )
-            with open(file, encoding="utf-8") as lines:
-                events, counts = executed(lines)
+        told, events, counts = in_valgrind(sheet(side, everything, WARM, STEPS), first, last)
         misses[first.name] = (events["D1mr"] + events["D1mw"]) / STEPS
         misses[last.name] = (events["DLmr"] + events["DLmw"]) / STEPS
     functions = {}
@@ -263,7 +256,23 @@ def simulate(side, everything, known):
     }
 
 
-def check(found, everything):
+def in_valgrind(command: list, first: Level, last: Level) -> tuple[dict, dict[str, int], Counts]:
+    """What a command prints, as JSON, and what `executed` reads of its run with two caches."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "callgrind.out"
+        told = answer(
+            ["valgrind", "--tool=callgrind", "--cache-sim=yes", "--instr-atstart=no"]
+            + ["--dump-instr=yes", "--dump-line=no", "--compress-pos=no"]
+            + ["--compress-strings=no", f"--callgrind-out-file={file}"]
+            + [f"--D1={first.size},{first.ways},{first.line}"]
+            + [f"--LL={last.size},{last.ways},{last.line}"]
+            + command
+        )
+        with open(file, encoding="utf-8") as lines:
+            return told, *executed(lines)
+
+
+def check(found: dict, everything: bool) -> None:
     """Raise RuntimeError if FLOPS are not those of the machine code that ran."""
     counts = found["sheet"]["computed"]
     for element, kernel in KERNELS.items():
@@ -282,17 +291,18 @@ def check(found, everything):
 # Entries and the picture.
 
 
-def measure(settings):
+def measure(settings: Settings) -> list[Entry]:
     """Entries of the limits, and of both cases of a sheet in all sizes, one thread."""
     build()
     known, sides = levels(), settings.sizes(SIDES)
     wanted = [(side, everything) for everything in cases.FORCES for side in sides]
     settings.tell(f"kernels and limits, {', '.join(str(side * side) for side in sides)} nodes")
-    takers = {None: lambda: answer([PROGRAM, "limits", *(level.probe for level in known)])}
+    machine = [PROGRAM, "limits", *(level.probe for level in known)]
+    takers: dict = {None: partial(answer, machine)}
     for side, everything in wanted:
         steps = cases.steps(settings, side * side)
         command = sheet(side, everything, max(1, steps // 10), steps)
-        takers[side, everything] = lambda c=command: answer(c)
+        takers[side, everything] = partial(answer, command)
     taken = take_turns(takers, settings.rounds, settings.quiet)
     limits = taken.pop(None)
 
@@ -309,7 +319,7 @@ def measure(settings):
     return settings.quiet.mark(found)
 
 
-def limit_entries(limits, known):
+def limit_entries(limits: list[dict], known: Sequence[Level]) -> list[Entry]:
     """Entries of what the machine can do at most."""
     rates = {
         "peak, sums and products": ("peak", 1e-9, "Gflop/s"),
@@ -328,7 +338,7 @@ def limit_entries(limits, known):
     return found
 
 
-def bandwidth_name(level):
+def bandwidth_name(level: Level) -> str:
     """Name of the entry of a Level's bandwidth."""
     return f"bandwidth, {level.name}"
 
@@ -346,7 +356,9 @@ class Point:
     known : list of Level
     """
 
-    def __init__(self, everything, told, limits, known):
+    def __init__(
+        self, everything: bool, told: list[dict], limits: list[dict], known: Sequence[Level]
+    ) -> None:
         self.sheet, self.everything = told[0], everything
         self.level = level_of(self.sheet["held"], known)
         self.flops = flops(self.sheet, everything)
@@ -361,11 +373,11 @@ class Point:
         self.dividing = [divisions / one["divisions"] + roots / one["roots"] for one in limits]
         self.cycles = [one["clock"] * seconds for one, seconds in zip(limits, self.seconds)]
 
-    def entry(self, name, numbers, unit):
+    def entry(self, name: str, numbers: list[float], unit: str) -> Entry:
         """An Entry of this point."""
         return entry(f"{NAMES[self.everything]}, {name}", numbers, unit, self.sheet["nodes"])
 
-    def entries(self):
+    def entries(self) -> list[Entry]:
         """Entries of times, operations and roofs."""
         sides = self.sheet["sides"]
         shares = [rate / roof for rate, roof in zip(self.rates, self.roofs)]
@@ -381,7 +393,7 @@ class Point:
         ]
 
 
-def simulated_entries(point, simulated):
+def simulated_entries(point: Point, simulated: dict) -> list[Entry]:
     """Entries of what valgrind counted."""
     sides, instructions = point.sheet["sides"], simulated["instructions"]
     all_flops = sum(simulated["flops"].values())
@@ -397,7 +409,7 @@ def simulated_entries(point, simulated):
     return found
 
 
-def plot(found, points, known, path):
+def plot(found: list[Entry], points: list[Point], known: Sequence[Level], path: Path | str) -> None:
     """Roofs of the machine, and where the cases lie under them.
 
     Parameters
@@ -415,13 +427,30 @@ def plot(found, points, known, path):
     bandwidths = {level.name: value[bandwidth_name(level)] for level in known}
     least = 0.7 * min(peak / max(bandwidths.values()), *(point.intensity for point in points))
     most = 6 * max(point.intensity for point in points)
-    lowest = 0.5 * min(rates.values())
     figure = Figure(figsize=(7.5, 5.2), layout="constrained")
     axes = figure.subplots()
-    axes.set(xscale="log", yscale="log", xlim=(least, most), ylim=(lowest, 1.6 * peak))
+    axes.set(xscale="log", yscale="log", xlim=(least, most))
+    axes.set(ylim=(0.5 * min(rates.values()), 1.6 * peak))
+    _draw_roofs(
+        axes, bandwidths, peak, f"sums and products, {peak:.0f} Gflop/s (fused: {fused:.0f})"
+    )
+    _draw_points(axes, rates)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter("")
+    axes.set(xlabel="operations a byte of the least traffic [flop/byte]")
+    axes.set(ylabel="operations a second [Gflop/s]")
+    axes.grid(alpha=0.3)
+    axes.legend(frameon=False, fontsize=9, loc="lower right")
+    save(figure, path)
+
+
+def _draw_roofs(axes: Axes, bandwidths: dict[str, float], peak: float, words: str) -> None:
+    """Lines of the bandwidths [GB/s] by name up to the peak [Gflop/s], and that, with `words`."""
+    (least, most), (lowest, _) = axes.get_xlim(), axes.get_ylim()
     for name, bandwidth in bandwidths.items():
-        corner = peak / bandwidth
-        axes.plot([lowest / bandwidth, corner], [lowest, peak], color="0.4")
+        axes.plot([lowest / bandwidth, peak / bandwidth], [lowest, peak], color="0.4")
         start = 1.08 * max(least, lowest / bandwidth)
         below = name == "L3"  # it is close to L2
         axes.text(
@@ -435,25 +464,14 @@ def plot(found, points, known, path):
             fontsize=9,
         )
     axes.plot([peak / max(bandwidths.values()), most], [peak, peak], color="0.4")
-    axes.text(
-        0.95 * most,
-        1.05 * peak,
-        f"sums and products, {peak:.0f} Gflop/s (fused: {fused:.0f})",
-        ha="right",
-        fontsize=9,
-    )
-    sizes = sorted({point.sheet["nodes"] for point in points})
+    axes.text(0.95 * most, 1.05 * peak, words, ha="right", fontsize=9)
+
+
+def _draw_points(axes: Axes, rates: dict[Point, float]) -> None:
+    """A mark at the rate [Gflop/s] of each Point."""
+    sizes = sorted({point.sheet["nodes"] for point in rates})
     for point, rate in rates.items():
         marker = "osD^"[sizes.index(point.sheet["nodes"]) % 4]
         colour = "C1" if point.everything else "C0"
         label = f"{NAMES[point.everything]}, {point.sheet['nodes']:,} nodes"
         axes.plot(point.intensity, rate, marker, color=colour, label=label, linestyle="none")
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-        axis.set_major_formatter("{x:g}")
-        axis.set_minor_formatter("")
-    axes.set(xlabel="operations a byte of the least traffic [flop/byte]")
-    axes.set(ylabel="operations a second [Gflop/s]")
-    axes.grid(alpha=0.3)
-    axes.legend(frameon=False, fontsize=9, loc="lower right")
-    save(figure, path)

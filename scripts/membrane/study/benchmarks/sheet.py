@@ -32,12 +32,12 @@ class Sheet:
     creases: np.ndarray
     crease_signs: np.ndarray
 
-    def sides(self):
+    def sides(self) -> np.ndarray:
         """Node ids (E, 2) of all sides, the smaller first, in lexical order."""
         return unique_sides(self.triangles)[0]
 
 
-def square_sheet(side):
+def square_sheet(side: int) -> Sheet:
     """A Sheet of `side` times `side` nodes."""
     nodes, triangles = sheet_mesh(side, side, SPACING)
     noise = np.random.default_rng(side).normal(scale=PERTURBATION * SPACING, size=nodes.shape)

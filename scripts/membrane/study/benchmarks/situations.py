@@ -8,6 +8,7 @@ what it measured, as a dict of numbers.
 import ctypes
 import gc
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -24,8 +25,10 @@ SHARE = 0.5  # of the critical time step
 DAMPING = {"zeta": 0.02}
 EVERYTHING = {**DAMPING, "beta": 30.0, "air_density": 1.2e-3}
 
+Measuring = Callable[[int], dict[str, float]]  # a function of a number of steps
 
-def resident():
+
+def resident() -> tuple[int, int]:
     """Memory of this process [bytes] that is in use, and the most that ever was.
 
     What was freed is given back first, so that what comes next does not hide in it.
@@ -37,12 +40,12 @@ def resident():
     return 1024 * int(sizes["VmRSS"]), 1024 * int(sizes["VmHWM"])
 
 
-def clocks():
+def clocks() -> np.ndarray:
     """Wall and processor time [s], (2,); on one thread other work lengthens the latter less."""
     return np.array([time.perf_counter(), time.process_time()])
 
 
-def stepping_times(steps):
+def stepping_times(steps: int) -> np.ndarray:
     """Both times [s] of `steps` steps of the scene, after a tenth as many to warm up."""
     scene.advance(max(1, steps // 10))
     start = clocks()
@@ -50,7 +53,7 @@ def stepping_times(steps):
     return clocks() - start
 
 
-def engine_times(steps):
+def engine_times(steps: int) -> dict[str, float]:
     """Wall time a step [s] of each engine of the scene, by the name of its class."""
     omega = yade.Omega()
     scene.advance(max(1, steps // 10))
@@ -62,10 +65,10 @@ def engine_times(steps):
     return {type(e).__name__: 1e-9 * e.execTime / steps for e in omega.engines if e.execCount}
 
 
-def stepping(**facts):
+def stepping(**facts: float) -> Measuring:
     """A measuring function: times a step [s], memory [bytes] after it, and `facts`."""
 
-    def measure(steps):
+    def measure(steps: int) -> dict[str, float]:
         wall, used = (stepping_times(steps) / steps).tolist()
         now, most = resident()
         return {"wall": wall, "used": used, "memory": now, "peak": most, **facts}
@@ -73,7 +76,7 @@ def stepping(**facts):
     return measure
 
 
-def sheet(side, path, everything, exchange_period=1):
+def sheet(side: int, path: str, everything: bool, exchange_period: int = 1) -> Measuring:
     """A square sheet of `side` times `side` nodes that swings freely.
 
     `everything`: creases, damping and drag; else damping only. Ledger and watch are off.
@@ -103,7 +106,7 @@ def sheet(side, path, everything, exchange_period=1):
     return stepping(nodes=side * side, added=added, build=build, before=before)
 
 
-def bodies(side):
+def bodies(side: int) -> Measuring:
     """YADE's own bodies, one a node; what the membrane itself takes is there before.
 
     They are made in C++: those made in Python keep Python objects, too.
@@ -117,7 +120,7 @@ def bodies(side):
     return stepping(before=before)
 
 
-def add_spheres(places, radius, material):
+def add_spheres(places: np.ndarray, radius: float, material: yade.Material) -> None:
     """Add a sphere at each of the `places` to the scene, as plain YADE scripts do."""
     omega = yade.Omega()
     omega.materials.append(material)
@@ -131,10 +134,10 @@ def add_spheres(places, radius, material):
         omega.bodies.append(body)
 
 
-def loop_time(links):
+def loop_time(links: int) -> Measuring:
     """A measuring function: seconds of the InteractionLoop for one step and interaction."""
 
-    def measure(steps):
+    def measure(steps: int) -> dict[str, float]:
         found = engine_times(steps)["InteractionLoop"] / links
         if yade.Omega().interactions.countReal() != links:
             raise RuntimeError("interactions were lost on the way")
@@ -143,7 +146,7 @@ def loop_time(links):
     return measure
 
 
-def springs(refine):
+def springs(refine: int) -> Measuring:
     """The interactions of the flat sail, by the plugin's functors, and nothing else."""
     mesh = sail_mesh(refine=refine)
     membrane = scene.add_membrane(
@@ -157,7 +160,7 @@ def springs(refine):
     return loop_time(omega.interactions.countReal())
 
 
-def contacts(refine):
+def contacts(refine: int) -> Measuring:
     """YADE's own sphere contacts on the same pairs of the same nodes, and nothing else."""
     mesh = sail_mesh(refine=refine)
     pairs = np.concatenate([mesh.sides, mesh.cables])
@@ -180,7 +183,7 @@ def contacts(refine):
     return loop_time(len(pairs))
 
 
-def folded(refine):
+def folded(refine: int) -> Measuring:
     """The paper's folded sail on path law2, all forces on: its loop and its engine, a side."""
     _, built = driver.build(SailParameters(refine=refine, path="law2"))
     omega = yade.Omega()
@@ -189,7 +192,7 @@ def folded(refine):
     omega.dt = STILL
     sides = len(built.membrane.sides)
 
-    def measure(steps):
+    def measure(steps: int) -> dict[str, float]:
         found = engine_times(steps)
         return {
             "loop": found["InteractionLoop"] / sides,
@@ -199,6 +202,10 @@ def folded(refine):
     return measure
 
 
-ALL = {
-    build.__name__: build for build in (sheet, bodies, springs, contacts, folded)
+ALL: dict[str, Callable[..., Measuring]] = {
+    "sheet": sheet,
+    "bodies": bodies,
+    "springs": springs,
+    "contacts": contacts,
+    "folded": folded,
 }  # by the name under which a worker is asked for them

@@ -2,9 +2,10 @@
 """The sheet on the fused path beside the bare springs of the same sheet in LAMMPS."""
 
 import tempfile
+from functools import partial
 from pathlib import Path
 
-from . import AT_MOST, lammps
+from . import AT_MOST, Entry, Settings, lammps
 from .cases import PERIODS, clock, fused_cases, label, plan, steps
 from .sheet import SIDES, square_sheet
 from .turns import entry, ratio_entry, take_turns
@@ -13,12 +14,12 @@ from .workers import workers
 MOST = {False: 0.5, True: 1.0}  # all forces or not; for the longest period
 
 
-def measure(settings):
+def measure(settings: Settings) -> list[Entry]:
     """Entries for three sizes on one thread."""
     return [e for side in settings.sizes(SIDES[:3]) for e in measure_sheet(side, 1, settings)]
 
 
-def measure_sheet(side, threads, settings):
+def measure_sheet(side: int, threads: int, settings: Settings) -> list[Entry]:
     """Entries for one sheet: times of LAMMPS and of each case, and ratios."""
     if not lammps.available():
         raise RuntimeError("there is no LAMMPS (lmp); scripts/run.sh bench installs it")
@@ -28,9 +29,8 @@ def measure_sheet(side, threads, settings):
     with tempfile.TemporaryDirectory() as name, workers(plans) as started:
         folder = Path(name)
         lammps.write_data(sheet, folder / "sheet.data")
-        takers = {None: lambda: lammps.loop_time(lammps.run(folder, many, threads), threads)}
-        for case, worker in started.items():
-            takers[case] = lambda w=worker: w.measure(many)[clock(threads)]
+        takers: dict = {None: lambda: lammps.loop_time(lammps.run(folder, many, threads), threads)}
+        takers |= {case: partial(w.timed, many, clock(threads)) for case, w in started.items()}
         times = take_turns(takers, settings.rounds, settings.quiet, wait=threads > 1)
 
     bare = times.pop(None)
@@ -40,7 +40,7 @@ def measure_sheet(side, threads, settings):
         each = [1e9 / nodes * seconds for seconds in taken]
         found.append(entry(label(*case), each, "ns a node and step", nodes, threads=threads))
         _, everything, period = case
-        wanted = {}
+        wanted: dict = {}
         if period == max(PERIODS):
             wanted = {"target": MOST[everything], "bound": AT_MOST}
         name = f"{label(*case)}, over LAMMPS"

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Two threads of the fused path beside one, and beside two of LAMMPS: in wall time."""
 
-from . import AT_LEAST, FUSED, springs
-from .cases import FORCES, PERIODS, label, plan, steps
+from functools import partial
+
+from . import AT_LEAST, FUSED, Entry, Settings, springs
+from .cases import FORCES, PERIODS, Case, label, plan, steps
 from .sheet import SIDES
 from .turns import entry, ratio_entry, take_turns
 from .workers import workers
@@ -10,7 +12,7 @@ from .workers import workers
 LEAST = {SIDES[0]: 0.97, SIDES[1]: 1.6, SIDES[2]: 1.6}  # the smallest: no slower, but for noise
 
 
-def measure(settings):
+def measure(settings: Settings) -> list[Entry]:
     """Entries of how many times faster two threads are than one, and than LAMMPS on two."""
     found = []
     for side in settings.sizes(LEAST):
@@ -21,13 +23,13 @@ def measure(settings):
     return found
 
 
-def measure_case(side, case, settings):
+def measure_case(side: int, case: Case, settings: Settings) -> list[Entry]:
     """Entries for one sheet and case."""
     nodes = side * side
     many = steps(settings, nodes)
     with workers({threads: plan(side, threads, *case) for threads in (1, 2)}) as started:
         times = take_turns(
-            {n: lambda w=w: w.measure(many)["wall"] for n, w in started.items()},
+            {n: partial(w.timed, many, "wall") for n, w in started.items()},
             settings.rounds,
             settings.quiet,
             wait=True,
@@ -37,6 +39,7 @@ def measure_case(side, case, settings):
         entry(f"threads: {name}", [1e9 / nodes * t for t in times[n]], unit, nodes, threads=n)
         for n in times
     ]
-    wanted = {"threads": 2, "target": LEAST[side], "bound": AT_LEAST}
-    found.append(ratio_entry(f"{name}, one thread over two", *times.values(), nodes, **wanted))
+    wanted: dict = {"threads": 2, "target": LEAST[side], "bound": AT_LEAST}
+    name = f"{name}, one thread over two"
+    found.append(ratio_entry(name, times[1], times[2], nodes, **wanted))
     return settings.quiet.mark(found)

@@ -14,12 +14,12 @@ from membrane.study.benchmarks import situations
 from membrane.study.benchmarks.workers import MARK
 
 
-def say(content):
+def say(content: dict) -> None:
     """Print a line that is an answer."""
     print(MARK + json.dumps(content), flush=True)
 
 
-def main():
+def main() -> None:
     """Build, then answer until there are no more questions."""
     asked = json.loads(sys.argv[1])
     threads = int(os.environ["OMP_NUM_THREADS"])

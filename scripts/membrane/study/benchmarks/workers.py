@@ -7,8 +7,10 @@ They stay while the others take their turns, so that each scene is built only on
 import json
 import subprocess
 import tempfile
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from typing import Any
 
 SCRIPT = Path(__file__).resolve().with_name("worker.py")
 MARK = "worker: "  # begins the lines that are answers; YADE prints others
@@ -25,7 +27,7 @@ class Worker:
         Of the situation.
     """
 
-    def __init__(self, situation, threads=1, **options):
+    def __init__(self, situation: str, threads: int = 1, **options: Any) -> None:
         self.name = f"{situation} {options} on {threads} threads"
         self.said = tempfile.TemporaryFile("w+", encoding="utf-8")
         asked = {"situation": situation, "threads": threads, "options": options}
@@ -39,31 +41,33 @@ class Worker:
         self._answer()
 
     def _answer(self):
-        for line in self.process.stdout:
+        for line in self.process.stdout or ():
             if line.startswith(MARK):
                 return json.loads(line[len(MARK) :])
         self.said.seek(0)
         raise RuntimeError(f"worker ended ({self.name}): {self.said.read().strip()[-600:]}")
 
-    def measure(self, steps):
+    def measure(self, steps: int) -> dict:
         """What the situation measures in `steps` steps."""
         print(steps, file=self.process.stdin, flush=True)
         return self._answer()
 
-    def close(self):
+    def timed(self, steps: int, clock: str) -> float:
+        """The time by one of its clocks."""
+        return self.measure(steps)[clock]
+
+    def close(self) -> None:
         """End the process."""
-        self.process.stdin.close()
         try:
-            self.process.wait(timeout=20)
+            self.process.communicate(timeout=20)
         except subprocess.TimeoutExpired:
             self.process.kill()
-            self.process.wait()
-        self.process.stdout.close()
+            self.process.communicate()
         self.said.close()
 
 
 @contextmanager
-def workers(plans):
+def workers(plans: dict[Any, dict]) -> Iterator[dict[Any, Worker]]:
     """Start workers, and end them.
 
     Parameters

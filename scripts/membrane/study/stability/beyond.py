@@ -9,6 +9,8 @@ undamped mode above its limit grows by a factor a step, b + sqrt(b² - 1) with b
 1, until numbers overflow at 1e308.
 """
 
+from pathlib import Path
+
 import numpy as np
 from membrane import scene
 from membrane.mesh import sail_mesh
@@ -30,13 +32,13 @@ SPEED = 1e-6  # m/s
 TOLERANCE = 0.1  # of the watch, its default
 
 
-def predicted(share, limit=1.01):
+def predicted(share: float, limit: float = 1.01) -> float:
     """Steps in which a taut mode overflows above its limit, `limit` times the estimate."""
     b = 2 * (share / limit) ** 2 - 1
     return 320 * np.log(10) / np.log(b + np.sqrt(b * b - 1))
 
 
-def refusal(model, step):
+def refusal(model: Model, step: float) -> str:
     """What the engine says to a step that is not forced; empty if it runs."""
     model.forces.forceTimeStep = False
     O.dt = step
@@ -49,52 +51,60 @@ def refusal(model, step):
     return ""
 
 
-def blow_up(share, zeta, most):
-    """Row of a run at `share` of the estimate, of at most `most` steps."""
+def film(zeta: float, tolerance: float | None = None) -> Model:
+    """The flat film with a tiny perturbation; with a `tolerance` it is watched."""
+    mesh = sail_mesh()
+    size = mesh.film_size
+    engine = {"zeta": zeta, "energy_tolerance": tolerance}
+    model = Model(mesh.nodes[:size], mesh.triangles, engine=engine)
+    model.ledger.dead = tolerance is None
+    rng = np.random.default_rng(4)
+    model.place(model.rest, SPEED * rng.normal(size=model.rest.shape))
+    return model
 
-    def build(tolerance=None):
-        mesh = sail_mesh()
-        size = mesh.film_size
-        engine = {"zeta": zeta, "energy_tolerance": tolerance}
-        made = Model(mesh.nodes[:size], mesh.triangles, engine=engine)
-        made.ledger.dead = tolerance is None
-        rng = np.random.default_rng(4)
-        made.place(made.rest, SPEED * rng.normal(size=made.rest.shape))
-        return made
 
-    model = build()
-    estimate = model.forces.criticalTimeStep()
-    refused = refusal(model, share * estimate)
-    model = build()
-    O.dt = share * estimate
-    start, grown, fastest, message = model.kinetic(), None, 0.0, ""
-    done = 0
-    try:
-        while done < most:
-            O.step()
-            done += 1
-            if grown is None or done % 20 == 0:
-                fastest = max(fastest, float(np.abs(model.velocities()).max()))
-                if grown is None and not model.kinetic() < 1e6 * start:
-                    grown = done
-    except RuntimeError as error:
-        message = str(error)
-    watched, said = watched_stop(build(TOLERANCE), share * estimate, most)
-    after = done - grown if message and grown is not None else -1
-    return [
+def blow_up(share: float, zeta: float, most: int) -> tuple[list, str]:
+    """Row of a run at `share` of the estimate, of at most `most` steps; who refuses it unforced."""
+    model = film(zeta)
+    step = share * model.forces.criticalTimeStep()
+    refused = refusal(model, step)
+    done, grown, fastest, message = forced_run(film(zeta), step, most)
+    watched, said = watched_stop(film(zeta, TOLERANCE), step, most)
+    row = [
         share,
         int(bool(refused)),
-        -1 if grown is None else grown,
-        after,
+        grown,
+        done - grown if message and grown >= 0 else -1,
         predicted(share) if share > 1.01 else np.inf,
         fastest,
         message or "not stopped",
         watched,
         said,
-    ], refused
+    ]
+    return row, refused
 
 
-def watched_stop(model, step, most):
+def forced_run(model: Model, step: float, most: int) -> tuple[int, int, float, str]:
+    """Steps that a run does, at most `most`, and what was seen on the way.
+
+    Beside them the steps to a million times the energy, -1 if it is never seen; the largest
+    velocity [m/s]; and what stops the run, empty if nothing does.
+    """
+    O.dt = step
+    start, grown, fastest = model.kinetic(), -1, 0.0
+    for done in range(most):
+        try:
+            O.step()
+        except RuntimeError as error:
+            return done, grown, fastest, str(error)
+        if grown < 0 or (done + 1) % 20 == 0:
+            fastest = max(fastest, float(np.abs(model.velocities()).max()))
+            if grown < 0 and not model.kinetic() < 1e6 * start:
+                grown = done + 1
+    return most, grown, fastest, ""
+
+
+def watched_stop(model: Model, step: float, most: int) -> tuple[int, str]:
     """Steps to the stop of a watched run of at most `most` steps, and its message; -1 if none."""
     O.dt = step
     for done in range(1, most + 1):
@@ -105,7 +115,7 @@ def watched_stop(model, step, most):
     return -1, "not stopped"
 
 
-def run(quick):
+def run(quick: bool) -> str:
     """Run above the limit; returns a line of text."""
     rows = []
     refused = ""
@@ -126,7 +136,7 @@ def run(quick):
     )
 
 
-def draw(rows, path):
+def draw(rows: list[list], path: Path) -> None:
     """Steps to the blow-up and from there to the stop, over the step."""
     drawing, axes = figure(width=6.0)
     axis = axes[0, 0]

@@ -12,6 +12,8 @@ buckled.
   that at rest.
 """
 
+from pathlib import Path
+
 import numpy as np
 from membrane import scene
 from membrane.parameters import SailParameters
@@ -25,7 +27,7 @@ TETHER, TETHER_EA, TETHER_DENSITY = 0.0478, 200.0, 2e-4  # m, N, kg/m
 FALL, MASS = 0.01, 0.36e-3  # m, kg
 
 
-def early_deployment(alpha, step, seconds):
+def early_deployment(alpha: float, step: float, seconds: float) -> tuple[float, float, float]:
     """Largest imbalance over the kinetic energy, that energy [J], and step / estimate."""
     O.reset()
     p = SailParameters(alpha=alpha, alpha_crease=alpha)
@@ -44,7 +46,7 @@ def early_deployment(alpha, step, seconds):
     return error / largest, largest, step / estimate
 
 
-def snaps(share, count):
+def snaps(share: float, count: int) -> tuple[float, float, int]:
     """Largest energy error over the energy of a fall up to `count` falls; step [s]; falls seen."""
     nodes = np.zeros((5, 3))
     nodes[:, 2] = np.linspace(0, -TETHER, 5)
@@ -76,7 +78,7 @@ def snaps(share, count):
     return error / fall, O.dt, seen
 
 
-def shrunk(factor, share, seconds):
+def shrunk(factor: float, share: float, seconds: float) -> tuple[float, float, float, float]:
     """Largest, last extent over that at rest, relative energy error, step [s] of a sheet."""
     nodes, triangles = grid(5)
     nodes = nodes - nodes.mean(axis=0)
@@ -98,9 +100,9 @@ def shrunk(factor, share, seconds):
     return largest, last, ledger.balance / ledger.initial, O.dt
 
 
-def run(quick):
+def run(quick: bool) -> str:
     """Measure all parts; returns a line of text."""
-    rows = []
+    rows: list[list] = []
     alphas = (0.0, 100.0, 1e6) if quick else (0.0, 1.0, 100.0, 1e3, 1e4, 1e5, 1e6)
     for alpha in alphas:
         for step in (5e-6,) if quick else (5e-6, 2.5e-6):
@@ -140,7 +142,7 @@ def run(quick):
     )
 
 
-def draw(rows, path):
+def draw(rows: list[list], path: Path) -> None:
     """Three panels, one a part."""
     drawing, axes = figure(columns=3, width=4.4)
     first, second, third = axes[0]

@@ -3,6 +3,9 @@
 
 import csv
 import io
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any
 
 import membrane as plugin
 import numpy as np
@@ -10,6 +13,7 @@ from matplotlib.figure import Figure
 from membrane import scene
 from membrane.files import replace_text
 from membrane.view import plots
+from numpy.typing import ArrayLike
 from yade import wrapper as yade
 
 from ..sources import BUILD, REFERENCE
@@ -33,7 +37,15 @@ class Model:
         [kg].
     """
 
-    def __init__(self, nodes, triangles=(), *, engine=None, gravity=0.0, **options):
+    def __init__(
+        self,
+        nodes: ArrayLike,
+        triangles: ArrayLike = (),
+        *,
+        engine: dict | None = None,
+        gravity: float = 0.0,
+        **options: Any,
+    ) -> None:
         O.reset()
         self.rest = np.array(nodes, dtype=float)
         self.net = scene.add_membrane(self.rest, triangles, **options)
@@ -44,24 +56,25 @@ class Model:
         self.states = [O.bodies[i].state for i in self.net.bodyIds]
         self.masses = np.array(self.net.masses)
 
-    def place(self, positions, velocities=None):
+    def place(self, positions: ArrayLike, velocities: ArrayLike | None = None) -> None:
         """Put the nodes at positions (N, 3) [m] with velocities (N, 3) [m/s], default 0."""
         if velocities is None:
             velocities = np.zeros_like(self.rest)
-        positions = np.asarray(positions, dtype=float).tolist()
-        for state, x, v in zip(self.states, positions, np.asarray(velocities).tolist()):
+        places = np.asarray(positions, dtype=float).tolist()
+        speeds = np.asarray(velocities, dtype=float).tolist()
+        for state, x, v in zip(self.states, places, speeds):
             state.pos, state.vel = x, v
         self.forces.forgetVelocities()
 
-    def positions(self):
+    def positions(self) -> np.ndarray:
         """Present positions (N, 3) [m]."""
         return np.array([state.pos for state in self.states])
 
-    def velocities(self):
+    def velocities(self) -> np.ndarray:
         """Present velocities (N, 3) [m/s], half a step before the positions."""
         return np.array([state.vel for state in self.states])
 
-    def balance(self, positions, release=False):
+    def balance(self, positions: np.ndarray, release: bool = False) -> None:
         """Put constant forces on the nodes that hold them at rest at `positions` (N, 3) [m].
 
         `release` only takes them away.
@@ -75,11 +88,11 @@ class Model:
         for i, force in zip(self.net.bodyIds, scene.compute_forces(self.sail).tolist()):
             O.forces.setPermF(i, tuple(-f for f in force))
 
-    def kinetic(self):
+    def kinetic(self) -> float:
         """Kinetic energy [J] of all nodes."""
         return kinetic(self.masses, self.velocities())
 
-    def start_ledger(self):
+    def start_ledger(self) -> plugin.MembraneLedger:
         """Exchange the ledger for one that starts at the next step; returns it."""
         new = plugin.MembraneLedger(forces=self.forces, gravity=self.ledger.gravity)
         O.engines = [new if isinstance(e, plugin.MembraneLedger) else e for e in O.engines]
@@ -87,13 +100,13 @@ class Model:
         return new
 
 
-def kinetic(masses, velocities):
+def kinetic(masses: np.ndarray, velocities: np.ndarray) -> float:
     """Kinetic energy [J] of masses (N,) [kg] with velocities (N, 3) [m/s]."""
     with np.errstate(all="ignore"):
         return float(0.5 * np.sum(masses[:, None] * velocities**2))
 
 
-def ripple(model, steps):
+def ripple(model: Model, steps: int) -> float:
     """Energy [J] of the change of the velocities in a step, m dv²/2, largest over `steps` steps.
 
     It sees the fast modes, which go unstable first, and not drift or rigid motion.
@@ -106,7 +119,7 @@ def ripple(model, steps):
     return largest
 
 
-def advance_below(model, steps, most, chunk=8):
+def advance_below(model: Model, steps: int, most: float, chunk: int = 8) -> bool:
     """Run `steps` steps; False as soon as the kinetic energy is seen above `most` [J].
 
     It looks every `chunk` steps, so that a run is left long before numbers overflow.
@@ -118,7 +131,7 @@ def advance_below(model, steps, most, chunk=8):
     return True
 
 
-def alternates(model):
+def alternates(model: Model) -> bool:
     """Whether the motion is ruled by modes that change sign in every step.
 
     So do those that a step too long makes grow; a state unstable in itself grows smoothly.
@@ -131,7 +144,15 @@ def alternates(model):
     return kinetic(model.masses, second) > 2 * kinetic(model.masses, first)
 
 
-def grows(model, positions, velocities, step, steps=600, watch=12, ratio=3.0):
+def grows(
+    model: Model,
+    positions: np.ndarray,
+    velocities: np.ndarray,
+    step: float,
+    steps: int = 600,
+    watch: int = 12,
+    ratio: float = 3.0,
+) -> bool:
     """Whether a perturbation grows by modes that alternate.
 
     Its ripple must grow `ratio`-fold from the middle of `steps` steps to their end, or a
@@ -149,7 +170,9 @@ def grows(model, positions, velocities, step, steps=600, watch=12, ratio=3.0):
     return not ripple(model, watch) < min(ratio * middle, 1e3 * first) and alternates(model)
 
 
-def bisect(is_above, low, high, rounds=9, widen=6):
+def bisect(
+    is_above: Callable[[float], bool], low: float, high: float, rounds: int = 9, widen: int = 6
+) -> float:
     """Where `is_above` turns true, by bisection of the ratio high / low; inf or 0 if nowhere."""
     for _ in range(widen):
         if is_above(high):
@@ -169,7 +192,9 @@ def bisect(is_above, low, high, rounds=9, widen=6):
     return float(np.sqrt(low * high))
 
 
-def grid(cells, length=0.02, height=None):
+def grid(
+    cells: int, length: float = 0.02, height: ArrayLike | None = None
+) -> tuple[np.ndarray, np.ndarray]:
     """Flat sheet of rows of isosceles triangles, staggered: nodes (N, 3) [m], triangles (T, 3).
 
     `cells` bases of `length` [m] in a row, `cells` rows; `height` [m] of one, or of each row.
@@ -191,7 +216,9 @@ def grid(cells, length=0.02, height=None):
     return nodes, np.array(triangles)
 
 
-def two_triangles(theta, heights=(0.02, 0.02), length=0.02):
+def two_triangles(
+    theta: float, heights: Sequence[float] = (0.02, 0.02), length: float = 0.02
+) -> np.ndarray:
     """Nodes A, B, C, D [m] of two triangles on a mountain crease AB at an angle theta [rad]."""
     half = 0.5 * theta
     arms = [np.array([0.0, side * np.sin(half), -np.cos(half)]) for side in (1, -1)]
@@ -203,14 +230,14 @@ def two_triangles(theta, heights=(0.02, 0.02), length=0.02):
 TWO_TRIANGLES = ((0, 1, 2), (1, 0, 3))
 
 
-def folder(quick):
+def folder(quick: bool) -> Path:
     """Where a topic's files go: reference/stability/, or with `quick` build/stability/."""
     path = OTHER if quick else FULL
     path.mkdir(parents=True, exist_ok=True)
     return path
 
 
-def write_table(path, header, rows):
+def write_table(path: Path, header: Sequence[str], rows: Iterable[Sequence]) -> None:
     """Write rows of numbers and words as CSV, whole or not at all."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
@@ -220,12 +247,14 @@ def write_table(path, header, rows):
     replace_text(path, stream.getvalue())
 
 
-def figure(columns=1, rows=1, width=5.0, height=3.8):
+def figure(
+    columns: int = 1, rows: int = 1, width: float = 5.0, height: float = 3.8
+) -> tuple[Figure, np.ndarray]:
     """A Figure and its axes (rows, columns)."""
     drawing = Figure(figsize=(width * columns, height * rows), layout="constrained")
     return drawing, drawing.subplots(rows, columns, squeeze=False)
 
 
-def save(drawing, path):
+def save(drawing: Figure, path: Path) -> None:
     """Write a picture, without the date in it."""
     plots.save(drawing, path, dpi=72, metadata={"Software": None})

@@ -28,11 +28,16 @@ turn through the cut of theta.
 """
 
 import __main__
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from itertools import product
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from membrane import scene
+from membrane.mesh import SailMesh
 from membrane.parameters import SailParameters
 from membrane.study.verification.deployment import begin, equilibrium
 from yade import wrapper as yade
@@ -55,17 +60,25 @@ HEIGHTS = np.logspace(-5.5, -2, 8)  # m
 LAWS = ("paper", "conservative")
 UNBUCKLED = {"alpha": 1e12, "alphaCrease": 1e12}
 LOOK = 1e-4  # s, between two looks at the sail's kinetic energy
-# beta, zeta, refine, and seconds
+# Cases, and seconds
 SAIL = (
-    (3.0, 0.02, 1, 0.1),
-    (30.0, 0.02, 1, 0.1),
-    (30.0, 0.0, 1, 0.1),
-    (30.0, 0.0, 2, 0.15),
+    ((3.0, 0.02, 1), 0.1),
+    ((30.0, 0.02, 1), 0.1),
+    ((30.0, 0.0, 1), 0.1),
+    ((30.0, 0.0, 2), 0.15),
 )
 BLOWN_UP = 100.0  # times the kinetic energy in the first row
 
+Case = tuple[float, float, int]  # beta, zeta, refine
+Runs = dict[tuple[Case, str], np.ndarray]  # rows of `sail_run` by case and lengths
+Distances = dict[Case, np.ndarray]
+Curves = Mapping[Any, tuple[np.ndarray, ...]]  # by law and what else is varied
+Ranges = dict[float, tuple[float, float, int]]  # what `angle_range` returns, by beta
 
-def collapse(lengths, beta, heights, step=5e-6, steps=400):
+
+def collapse(
+    lengths: str, beta: float, heights: np.ndarray, step: float = 5e-6, steps: int = 400
+) -> np.ndarray:
     """Largest speed (H,) [m/s] of an apex let go at theta = pi/2 at `heights` (H,) [m], in NumPy.
 
     Equilateral triangles of 20 mm, (7) with `rest` or `current` lengths, three nodes held.
@@ -87,29 +100,31 @@ def collapse(lengths, beta, heights, step=5e-6, steps=400):
     return largest
 
 
-def collapse_by_hand(lengths, beta, heights):
+def collapse_by_hand(lengths: str, beta: float, heights: np.ndarray) -> np.ndarray:
     """Speed (H,) [m/s] from the work of (7) along the arc from theta = pi/2 to 0."""
     work = beta * reference.bending_stiffness(YOUNG, THICKNESS) * LENGTH * np.pi**2 / 8
     reach = heights if lengths == "current" else 0.75 * LENGTH**2 / heights
     return np.sqrt(2 * work / reach / CORNER)
 
 
-def forces_by_hand(x, creases, inside, rest, bending, current):
+def forces_by_hand(
+    x: np.ndarray,
+    creases: np.ndarray,
+    inside: np.ndarray,
+    rest: dict,
+    bending: float,
+    current: bool,
+) -> tuple[np.ndarray, float, float]:
     """Forces of (7) and (8) in NumPy, with rest or `current` lengths in (7).
 
     Parameters
     ----------
-    x : (N, 3) float
-        Positions [m].
-    creases : (C, 4) int
-        Nodes A, B, C, D; see reference.crease_nodes.
-    inside : (C,) float
-        See reference.crease_angle.
+    x, creases, inside
+        Positions (N, 3) [m] and others as in reference.crease_angle.
     rest : dict
         reference.crease_frame at rest.
     bending : float
         beta E J [N m].
-    current : bool
 
     Returns
     -------
@@ -155,7 +170,9 @@ class CreaseForces:
     calls : int
     """
 
-    def __init__(self, mesh, built, beta, lengths):
+    def __init__(
+        self, mesh: SailMesh, built: scene.MembraneScene, beta: float, lengths: str
+    ) -> None:
         self.forces, self.ids = built.forces, built.membrane.bodyIds
         self.creases = reference.crease_nodes(mesh.triangles, mesh.creases)
         self.inside = -mesh.crease_signs
@@ -164,7 +181,7 @@ class CreaseForces:
         self.current = lengths == "current"
         self.largest, self.lowest, self.calls = 0.0, 1.0, 0
 
-    def __call__(self):
+    def __call__(self) -> None:
         x = np.array([(p[0], p[1], p[2]) for p in self.forces.lastPositions()])
         nodal, largest, lowest = forces_by_hand(
             x, self.creases, self.inside, self.rest, self.bending, self.current
@@ -175,12 +192,29 @@ class CreaseForces:
         self.calls += 1
 
 
-def sail_run(case, lengths, seconds, row=2e-3):
+@contextmanager
+def creases_by_hand(built: scene.MembraneScene, creases: CreaseForces) -> Iterator[None]:
+    """In the block `creases` makes the forces of a sail's creases, and the plugin none."""
+    built.forces.beta = 0.0
+    __main__.put_crease_forces = creases  # PyRunner looks there
+    runner = yade.PyRunner(command="put_crease_forces()", iterPeriod=1, initRun=True)
+    engines = O.engines
+    at = next(i for i, e in enumerate(engines) if isinstance(e, type(built.forces)))
+    O.engines = [*engines[: at + 1], runner, *engines[at + 1 :]]
+    try:
+        yield
+    finally:
+        del __main__.put_crease_forces
+
+
+def sail_run(
+    case: Case, lengths: str, seconds: float, row: float = 2e-3
+) -> tuple[np.ndarray, np.ndarray]:
     """Run the paper's sail from its release, with creases by the plugin or by CreaseForces.
 
     Parameters
     ----------
-    case : (beta, zeta, refine)
+    case : Case
     lengths : str
         `plugin`: its own creases; `rest`, `current`: see CreaseForces.
     seconds : float
@@ -190,66 +224,71 @@ def sail_run(case, lengths, seconds, row=2e-3):
 
     Returns
     -------
-    rows : (S, 5) float
-        Time [s], kinetic energy [J], largest speed of a node [m/s]; since the row before: largest
-        force of a crease on an apex [N] and lowest height over its rest value [-].
-    frames : (S, N, 3) float
-        Positions [m].
+    rows, frames
+        As `watched` returns them.
     """
     beta, zeta, refine = case
     start = SailParameters(refine=refine)
     p = replace(start, beta=beta, zeta=zeta)
     mesh, built = begin(p, equilibrium(start), ledger=False)
     creases = CreaseForces(mesh, built, beta, lengths)
-    if lengths != "plugin":
-        built.forces.beta = 0.0
-        __main__.put_crease_forces = creases  # PyRunner looks there
-        runner = yade.PyRunner(command="put_crease_forces()", iterPeriod=1, initRun=True)
-        engines = O.engines
-        at = next(i for i, e in enumerate(engines) if isinstance(e, type(built.forces)))
-        O.engines = [*engines[: at + 1], runner, *engines[at + 1 :]]
-    masses = built.masses()
-    rows, frames = [], []
-    stride, between = round(LOOK / p.dt), round(row / LOOK)
-    looks = round(seconds / LOOK)
-    try:
-        with np.errstate(all="ignore"):
-            for look in range(1, looks + 1):
-                scene.advance(stride)
-                bodies = yade.Omega().bodies
-                v = np.array([bodies[i].state.vel for i in built.membrane.bodyIds])
-                energy = kinetic(masses, v)
-                most = BLOWN_UP * rows[0][1] if rows else np.inf
-                last = look == looks or not energy < most
-                if look % between == 0 or last:
-                    speed = float(np.linalg.norm(v, axis=1).max())
-                    rows.append([look * LOOK, energy, speed, creases.largest, creases.lowest])
-                    frames.append(built.positions())
-                    creases.largest, creases.lowest = 0.0, 1.0
-                if last:
-                    break
-    except RuntimeError:  # numbers overflowed between two looks
-        rows.append([look * LOOK, np.inf, np.inf, np.inf, creases.lowest])
-    finally:
-        if lengths != "plugin":
-            del __main__.put_crease_forces
-    assert lengths == "plugin" or creases.calls >= (look - 1) * stride
+    if lengths == "plugin":
+        return watched(built, creases, seconds, row)
+    with creases_by_hand(built, creases):
+        rows, frames = watched(built, creases, seconds, row)
+    assert creases.calls >= (round(rows[-1, 0] / LOOK) - 1) * round(LOOK / p.dt)
+    return rows, frames
+
+
+@np.errstate(all="ignore")
+def watched(
+    built: scene.MembraneScene, creases: CreaseForces, seconds: float, row: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Run a sail for `seconds`, or until it has blown up, and tell of it every `row` [s].
+
+    Returns
+    -------
+    rows : (S, 5) float
+        Time [s], kinetic energy [J], largest speed of a node [m/s]; since the row before: largest
+        force of a crease on an apex [N] and lowest height over its rest value [-].
+    frames : (S, N, 3) float
+        Positions [m].
+    """
+    masses, ids = built.masses(), built.membrane.bodyIds
+    stride, between, looks = round(LOOK / O.dt), round(row / LOOK), round(seconds / LOOK)
+    rows: list[list[float]] = []
+    frames = []
+    for look in range(1, looks + 1):
+        try:
+            scene.advance(stride)
+        except RuntimeError:  # numbers overflowed between two looks
+            rows.append([look * LOOK, np.inf, np.inf, np.inf, creases.lowest])
+            break
+        v = np.array([O.bodies[i].state.vel for i in ids])
+        energy = kinetic(masses, v)
+        last = look == looks or not energy < (BLOWN_UP * rows[0][1] if rows else np.inf)
+        if look % between == 0 or last:
+            speed = float(np.linalg.norm(v, axis=1).max())
+            rows.append([look * LOOK, energy, speed, creases.largest, creases.lowest])
+            frames.append(built.positions())
+            creases.largest, creases.lowest = 0.0, 1.0
+        if last:
+            break
     return np.array(rows), np.array(frames)
 
 
-def blown_up(rows):
+def blown_up(rows: np.ndarray) -> bool:
     """Whether rows of `sail_run` end by its kinetic energy."""
     return not rows[-1, 1] < BLOWN_UP * rows[0, 1]
 
 
-def sail_lengths(quick):
+def sail_lengths(quick: bool) -> tuple[Runs, Distances]:
     """Runs {(case, lengths): rows} of the sail, and {case: distances (S,) [m]}.
 
     Distances are the largest ones of a node in the control from that in the plugin's own run.
     """
-    runs, distances = {}, {}
-    for *case, seconds in SAIL[1:2] if quick else SAIL:
-        case, row = tuple(case), 2e-3
+    runs, distances, row = {}, {}, 2e-3
+    for case, seconds in SAIL[1:2] if quick else SAIL:
         if quick:
             seconds, row = 2e-3, 1e-3
         _, frames = sail_run(case, "plugin", seconds, row)
@@ -262,13 +301,13 @@ def sail_lengths(quick):
     return runs, distances
 
 
-def case_name(case):
+def case_name(case: Case) -> str:
     """Name of a run of the sail."""
     beta, zeta, refine = case
     return f"beta = {beta:g}, zeta = {zeta:g}" + (f", refine = {refine}" if refine > 1 else "")
 
 
-def angle_range(beta, seconds):
+def angle_range(beta: float, seconds: float) -> tuple[float, float, int]:
     """Lowest and highest angle [rad] of the sail's creases, and how often one passed the cut."""
     _, built = begin(SailParameters(beta=beta), equilibrium(SailParameters()), ledger=False)
     before = np.array(built.forces.creaseAngles())
@@ -285,12 +324,12 @@ def angle_range(beta, seconds):
 # --- a pair ---
 
 
-def law_curve(law, theta0, angles):
+def law_curve(law: str, theta0: float, angles: np.ndarray) -> np.ndarray:
     """Force [N] of the plugin on C along its opening direction, at angles (S,) [rad]."""
     return force_and_energy(law, theta0, angles)[0]
 
 
-def force_and_energy(law, theta0, angles):
+def force_and_energy(law: str, theta0: float, angles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Force (S,) [N] on C along its opening direction, and energy (S,) [J], at angles (S,) [rad].
 
     Angles may lie beyond the cut at 3 pi/2: the pair is turned on.
@@ -310,13 +349,13 @@ def force_and_energy(law, theta0, angles):
     return np.array(forces), np.array(energies)
 
 
-def pair(rest, *, buckling=True, **engine):
+def pair(rest: np.ndarray, *, buckling: bool = True, **engine: Any) -> Model:
     """A Model of two triangles on a crease."""
-    options = {"alphaCrease": 100.0} if buckling else UNBUCKLED
+    options: dict = {"alphaCrease": 100.0} if buckling else UNBUCKLED
     return Model(rest, TWO_TRIANGLES, creases=[(0, 1)], crease_signs=[1], engine=engine, **options)
 
 
-def follow(model, seconds):
+def follow(model: Model, seconds: float) -> tuple[np.ndarray, np.ndarray]:
     """All energy [J] and the angle [rad] of a pair's crease in each step from now on, both (S,)."""
     ledger = model.start_ledger()
     totals, angles = [], []
@@ -327,7 +366,7 @@ def follow(model, seconds):
     return np.array(totals), np.array(angles)
 
 
-def swing(share, law, seconds=0.05):
+def swing(share: float, law: str, seconds: float = 0.05) -> tuple[float, np.ndarray]:
     """Largest relative error of the energy, and angles (S,) [rad], of a pair that swings freely."""
     rest = two_triangles(np.pi)
     model = pair(rest, beta=300.0, crease_law=law)
@@ -344,7 +383,7 @@ def swing(share, law, seconds=0.05):
     return float(np.abs(totals / totals[0] - 1).max()), angles
 
 
-def swing_frequency(masses, stiffness, theta0):
+def swing_frequency(masses: np.ndarray, stiffness: float, theta0: float) -> float:
     """Angular frequency [rad/s] of small swings of a free pair about theta0 [rad].
 
     By hand: masses m at C and D, M at A and B, height H, psi = theta/2. The centre of mass is at
@@ -356,7 +395,9 @@ def swing_frequency(masses, stiffness, theta0):
     return np.sqrt(2 * stiffness / (apex * LENGTH**2 * share))
 
 
-def swing_about(theta0, law, share, amplitude, seconds):
+def swing_about(
+    theta0: float, law: str, share: float, amplitude: float, seconds: float
+) -> tuple[float, float]:
     """Swing of a free pair, let go `amplitude` [rad] from theta0 [rad], that does not buckle.
 
     Returns the largest error of the energy over the swing's, and frequency over the closed form
@@ -379,7 +420,7 @@ def swing_about(theta0, law, share, amplitude, seconds):
     return float(np.abs(totals / totals[0] - 1).max()), error
 
 
-def turn_through_cut(law, seconds):
+def turn_through_cut(law: str, seconds: float) -> tuple[np.ndarray, np.ndarray]:
     """A free pair, beta = 30, thrown open through the cut, where it turns on and on.
 
     Returns the angle [rad] without the cut, and the sum of all energies over K [-], both (S,).
@@ -399,7 +440,9 @@ def turn_through_cut(law, seconds):
     return np.unwrap(angles), totals / stiffness
 
 
-def momentum(law, ratio, zeta, seconds, samples=100):
+def momentum(
+    law: str, ratio: float, zeta: float, seconds: float, samples: int = 100
+) -> tuple[np.ndarray, np.ndarray]:
     """Angular momentum of a free pair with heights 1 : ratio, over time; NaN once it has blown up.
 
     Divided by the moment of inertia times 1/s, it is a spin rate [rad/s].
@@ -426,7 +469,7 @@ def momentum(law, ratio, zeta, seconds, samples=100):
     return np.array(times), np.array(spins)
 
 
-def measure_lengths(quick, rows):
+def measure_lengths(quick: bool, rows: list[list]) -> dict[tuple[str, float], np.ndarray]:
     """Speeds (H,) by lengths and beta of a collapsed triangle's apex."""
     speeds = {}
     for lengths in ("rest", "current"):
@@ -441,7 +484,7 @@ def measure_lengths(quick, rows):
     return speeds
 
 
-def measure_sail(quick, rows):
+def measure_sail(quick: bool, rows: list[list]) -> tuple[Runs, Distances]:
     """What `sail_lengths` returns."""
     runs, distances = sail_lengths(quick)
     for (case, lengths), found in runs.items():
@@ -456,7 +499,7 @@ def measure_sail(quick, rows):
     return runs, distances
 
 
-def measure_law(quick, rows):
+def measure_law(quick: bool, rows: list[list]) -> Curves:
     """Angles (S,) [rad] and forces (S,) [N] by law and theta0."""
     angles = np.sort(
         np.append(np.linspace(-0.499, 1.499, 25 if quick else 81) * np.pi, [-1e-6, 1e-6])
@@ -471,7 +514,7 @@ def measure_law(quick, rows):
     return curves
 
 
-def measure_swings(quick, rows):
+def measure_swings(quick: bool, rows: list[list]) -> tuple[dict, dict]:
     """Energy errors by (law, share), and errors of energy and frequency about theta0."""
     shares = (0.5,) if quick else (0.8, 0.4, 0.2, 0.1)
     through, about = {}, {}
@@ -491,7 +534,7 @@ def measure_swings(quick, rows):
     return through, about
 
 
-def measure_cut(quick, rows):
+def measure_cut(quick: bool, rows: list[list]) -> tuple[Curves, Curves]:
     """Angles, forces and energies by law and theta0 around the cut; and free pairs by law."""
     angles = np.linspace(1.2, 1.8, 13 if quick else 61) * np.pi
     angles = np.sort(np.append(angles, 1.5 * np.pi + np.array([-1e-6, 1e-6])))
@@ -512,7 +555,7 @@ def measure_cut(quick, rows):
     return curves, turns
 
 
-def measure_range(quick, rows):
+def measure_range(quick: bool, rows: list[list]) -> Ranges:
     """What `angle_range` returns, by beta."""
     ranges = {}
     for beta in (30.0,) if quick else (30.0, 3.0, 0.3):
@@ -523,7 +566,7 @@ def measure_range(quick, rows):
     return ranges
 
 
-def measure_momentum(quick, rows):
+def measure_momentum(quick: bool, rows: list[list]) -> Curves:
     """What `momentum` returns, by law, ratio of heights and zeta."""
     spins = {}
     for law in LAWS:
@@ -537,9 +580,9 @@ def measure_momentum(quick, rows):
     return spins
 
 
-def run(quick):
+def run(quick: bool) -> str:
     """Measure all parts; returns a line of text."""
-    rows = []
+    rows: list[list] = []
     speeds = measure_lengths(quick, rows)
     runs, distances = measure_sail(quick, rows)
     curves = measure_law(quick, rows)
@@ -569,7 +612,7 @@ def run(quick):
     )
 
 
-def about_lengths(speeds, runs, distances):
+def about_lengths(speeds: dict, runs: Runs, distances: Distances) -> str:
     """A sentence on the lengths in (7)."""
     largest = {lengths: speeds[lengths, 30.0].max() for lengths in ("rest", "current")}
     found = []
@@ -595,7 +638,7 @@ def about_lengths(speeds, runs, distances):
     )
 
 
-def about_angles(curves, through, about):
+def about_angles(curves: Curves, through: dict, about: dict) -> str:
     """A sentence on theta = 0 and pi."""
     jump = {}
     for law in LAWS:
@@ -614,7 +657,7 @@ def about_angles(curves, through, about):
     )
 
 
-def about_cut(cuts, turns, ranges):
+def about_cut(cuts: Curves, turns: Curves, ranges: Ranges) -> str:
     """A sentence on theta = -pi/2 = 3 pi/2."""
     _, force, energy = cuts["paper", 0.0]
     at = int(np.argmax(np.abs(np.diff(force))))
@@ -631,7 +674,7 @@ def about_cut(cuts, turns, ranges):
     )
 
 
-def about_momentum(spins):
+def about_momentum(spins: Curves) -> str:
     """A sentence on angular momentum, and which law to take."""
     worst = {
         law: max(s.max() for (name, r, z), (_, s) in spins.items() if name == law and r > 1)
@@ -645,7 +688,7 @@ def about_momentum(spins):
     )
 
 
-def draw_lengths(axis, speeds):
+def draw_lengths(axis: Axes, speeds: dict) -> None:
     """Largest speed of a collapsed triangle's apex over its height."""
     for (lengths, beta), speed in speeds.items():
         color = "C0" if lengths == "rest" else "C3"
@@ -658,7 +701,7 @@ def draw_lengths(axis, speeds):
     axis.legend(fontsize=6)
 
 
-def draw_sail(left, right, runs):
+def draw_sail(left: Axes, right: Axes, runs: Runs) -> None:
     """Kinetic energy of the sail, and largest force of a crease, over time."""
     colors = {case: f"C{i}" for i, case in enumerate(dict.fromkeys(case for case, _ in runs))}
     for (case, lengths), found in runs.items():
@@ -675,7 +718,7 @@ def draw_sail(left, right, runs):
     right.legend(fontsize=7)
 
 
-def draw_law(axis, curves):
+def draw_law(axis: Axes, curves: Curves) -> None:
     """Force over the angle."""
     for (law, theta0), (angles, force) in curves.items():
         style = "-" if law == "paper" else "--"
@@ -688,7 +731,7 @@ def draw_law(axis, curves):
     axis.legend(fontsize=7)
 
 
-def draw_swings(axis, through, about):
+def draw_swings(axis: Axes, through: dict, about: dict) -> None:
     """Error of the energy of swings through 0 and about pi, over the step."""
     for law, style in zip(LAWS, ("-", "--")):
         curves = {f"{law}, through 0": {h: e for (name, h), e in through.items() if name == law}}
@@ -702,7 +745,7 @@ def draw_swings(axis, through, about):
     axis.legend(fontsize=6)
 
 
-def draw_momentum(axis, spins):
+def draw_momentum(axis: Axes, spins: Curves) -> None:
     """Spin that came from nothing."""
     for (law, ratio, zeta), (times, spin) in spins.items():
         if zeta == 0.1:
@@ -712,7 +755,7 @@ def draw_momentum(axis, spins):
     axis.legend(fontsize=6)
 
 
-def draw_cut(axis, cuts, ranges):
+def draw_cut(axis: Axes, cuts: Curves, ranges: Ranges) -> None:
     """Force and energy on both sides of the cut, and the sail's highest angles."""
     stiffness = 30.0 * reference.bending_stiffness(YOUNG, THICKNESS)
     for (law, theta0), (angles, force, energy) in cuts.items():
@@ -729,7 +772,7 @@ def draw_cut(axis, cuts, ranges):
     axis.legend(fontsize=6)
 
 
-def draw_turns(axis, turns):
+def draw_turns(axis: Axes, turns: Curves) -> None:
     """Energy of a free pair that turns through the cut."""
     for law, style in zip(LAWS, ("-", "--")):
         turned, energy = turns[law]

@@ -10,6 +10,7 @@ estimate takes the slope of the drag, 2 rho V S / 6, as damping: it stays below 
 """
 
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 from membrane import scene
@@ -34,12 +35,12 @@ HEADER = (
 )
 
 
-def limit(air, speed, thickness=THICKNESS, film=FILM):
+def limit(air: float, speed: float, thickness: float = THICKNESS, film: float = FILM) -> float:
     """Step [s] above which a plate face on to its `speed` [m/s] is turned back by its drag."""
     return 2 * film * thickness / (air * speed)
 
 
-def plate(air, thickness):
+def plate(air: float, thickness: float) -> Model:
     """A Model of a flat plate of two triangles in the x-z plane."""
     return Model(
         two_triangles(np.pi),
@@ -49,7 +50,7 @@ def plate(air, thickness):
     )
 
 
-def throw(model, speed):
+def throw(model: Model, speed: float) -> np.ndarray:
     """Put a plate where it rests and move it face on at `speed` [m/s]; returns its normal (3,)."""
     normal = np.cross(model.rest[1] - model.rest[0], model.rest[2] - model.rest[0])
     normal /= np.linalg.norm(normal)
@@ -57,7 +58,7 @@ def throw(model, speed):
     return normal
 
 
-def speed_after(model, speed, step, steps):
+def speed_after(model: Model, speed: float, step: float, steps: int) -> float:
     """Velocity [m/s] along the normal after `steps` steps of a plate that starts at `speed`."""
     normal = throw(model, speed)
     O.dt = step
@@ -65,7 +66,7 @@ def speed_after(model, speed, step, steps):
     return float(model.velocities().mean(axis=0) @ normal)
 
 
-def sail_in_air(air, share, seconds):
+def sail_in_air(air: float, share: float, seconds: float) -> tuple[float, float, float]:
     """Step [s], and largest and last kinetic energy over the first, of the spinning sail.
 
     It also moves face on at TIP_SPEED.
@@ -86,7 +87,7 @@ def sail_in_air(air, share, seconds):
     return O.dt, largest / start, model.kinetic() / start
 
 
-def run(quick):
+def run(quick: bool) -> str:
     """Measure plates and the sail; returns a line of text."""
     airs = (1.2e-3, ATMOSPHERE, 1000.0)
     rows, errors = [], []
@@ -96,10 +97,10 @@ def run(quick):
         estimate = model.forces.criticalTimeStep()
         turn = limit(air, speed, thickness)
 
-        def reverses(step):
+        def reverses(step: float) -> bool:
             return speed_after(model, speed, step, 1) < 0
 
-        def swells(step):
+        def swells(step: float) -> bool:
             return abs(speed_after(model, speed, step, 1)) > speed
 
         rounds = 8 if quick else 20
@@ -122,7 +123,7 @@ def run(quick):
     )
 
 
-def draw(rows, path):
+def draw(rows: list[list], path: Path) -> None:
     """Limits over density times speed."""
     drawing, axes = figure(width=6.0)
     axis = axes[0, 0]

@@ -9,6 +9,8 @@ it gives the drift a second. A run is left where its energy is above 1000 times 
 it is stopped.
 """
 
+from pathlib import Path
+
 import numpy as np
 from membrane import scene
 
@@ -18,6 +20,9 @@ SPIN = 60.0  # rad/s
 CELLS, LENGTH = 3, 0.04  # cells in a row, and their length [m]
 SECONDS = 10.0
 LEFT = 1000.0  # times the first energy
+
+Curve = tuple[str, float, np.ndarray, np.ndarray]  # motion, step / estimate, times, errors
+
 HEADER = (
     "motion",
     "step / estimate [-]",
@@ -30,11 +35,8 @@ HEADER = (
 )
 
 
-def history(motion, share, seconds, samples=200):
-    """Times [s] and relative errors of the sheet's energy over `seconds`, step [s], if it was left.
-
-    The last error of a run that was stopped is inf.
-    """
+def moving_sheet(motion: str) -> Model:
+    """The sheet, set in motion."""
     nodes, triangles = grid(CELLS, LENGTH)
     nodes = nodes - nodes.mean(axis=0)
     taut = motion == "taut"
@@ -51,6 +53,17 @@ def history(motion, share, seconds, samples=200):
         velocities -= np.average(velocities, axis=0, weights=model.masses)
         velocities += np.cross([0.0, 0.0, SPIN], positions)
     model.place(positions, velocities)
+    return model
+
+
+def history(
+    motion: str, share: float, seconds: float, samples: int = 200
+) -> tuple[np.ndarray, np.ndarray, float, bool]:
+    """Times [s] and relative errors of the sheet's energy over `seconds`, step [s], if it was left.
+
+    The last error of a run that was stopped is inf.
+    """
+    model = moving_sheet(motion)
     O.dt = share * model.forces.criticalTimeStep()
     ledger = model.start_ledger()
     stride = max(1, int(seconds / O.dt / samples))
@@ -73,7 +86,7 @@ def history(motion, share, seconds, samples=200):
     return np.array(times), np.array(errors), O.dt, left
 
 
-def run(quick):
+def run(quick: bool) -> str:
     """Run all motions at several steps; returns a line of text."""
     shares = (0.9, 0.45) if quick else (0.95, 0.7, 0.5, 0.25, 0.125)
     rows, curves = [], []
@@ -101,7 +114,7 @@ def run(quick):
     )
 
 
-def draw(rows, curves, path):
+def draw(rows: list[list], curves: list[Curve], path: Path) -> None:
     """Errors over time, and the largest over the step."""
     drawing, axes = figure(columns=2)
     left, right = axes[0]
@@ -119,9 +132,9 @@ def draw(rows, curves, path):
     left.legend(fontsize=5, ncol=3, title="step / estimate", title_fontsize=6, loc="upper left")
     for motion, sign in (("taut", "o-"), ("buckling", "s:")):
         mine = [r for r in rows if r[0] == motion]
-        errors = [min(r[5], LEFT) for r in mine]
-        right.loglog([r[1] for r in mine], errors, sign, label=motion)
-        most = errors[-1] / mine[-1][1] ** 2
+        largest = [min(r[5], LEFT) for r in mine]
+        right.loglog([r[1] for r in mine], largest, sign, label=motion)
+        most = largest[-1] / mine[-1][1] ** 2
     mine = [r for r in rows if r[0] == "damped"]
     gains = [max(r[6], 1e-16) for r in mine]
     right.loglog([r[1] for r in mine], gains, "^--", label="buckling, zeta 0.02: gain")

@@ -9,6 +9,7 @@ run. Predicted: the sign of the least side's sum.
 """
 
 from itertools import product
+from pathlib import Path
 
 import membrane as plugin
 import numpy as np
@@ -28,18 +29,18 @@ HEADER = (
 )
 
 
-def height(angle):
+def height(angle: float) -> float:
     """Height [m] of an isosceles triangle on a base LENGTH with an apex angle [deg]."""
     return 0.5 * LENGTH / np.tan(0.5 * np.radians(angle))
 
 
-def sheet(kind, angle):
+def sheet(kind: str, angle: float) -> tuple[np.ndarray, np.ndarray]:
     """Nodes, triangles of a free sheet: `uniform`, or `mixed` with equilateral rows."""
     flat, good = height(angle), height(60.0)
     return grid(5, LENGTH, flat if kind == "uniform" else [good, flat, good, flat, good])
 
 
-def stiffness_matrix(net, nodes):
+def stiffness_matrix(net: plugin.Membrane, nodes: np.ndarray) -> np.ndarray:
     """K (2 N, 2 N) [N/m] of the sheet in its plane, unstressed."""
     k = np.zeros((2 * len(nodes), 2 * len(nodes)))
     for (a, b), stiffness in zip(net.sides, net.stiffnesses):
@@ -50,7 +51,9 @@ def stiffness_matrix(net, nodes):
     return k
 
 
-def membrane(kind, angle, poisson):
+def membrane(
+    kind: str, angle: float, poisson: float
+) -> tuple[np.ndarray, np.ndarray, plugin.Membrane]:
     """Nodes and triangles of a sheet, and its Membrane, not in the scene."""
     nodes, triangles = sheet(kind, angle)
     net = plugin.Membrane(
@@ -62,14 +65,16 @@ def membrane(kind, angle, poisson):
     return nodes, triangles, net
 
 
-def lowest_eigenvalue(net, nodes):
+def lowest_eigenvalue(net: plugin.Membrane, nodes: np.ndarray) -> float:
     """Lowest eigenvalue of K beyond rigid motion over the highest [-]; 0 for a mechanism."""
     values = np.linalg.eigvalsh(stiffness_matrix(net, nodes))
     rest = np.delete(values, np.argsort(np.abs(values))[:3])
     return float(rest[0] / values[-1])
 
 
-def runs_stably(nodes, triangles, poisson, steps=2000):
+def runs_stably(
+    nodes: np.ndarray, triangles: np.ndarray, poisson: float, steps: int = 2000
+) -> bool:
     """Whether a tiny perturbation of the sheet in its plane stays bounded."""
     material = scene.film(poisson=poisson)
     model = Model(nodes, triangles, material=material, alpha=1e6, allowNegativeStiffness=True)
@@ -80,7 +85,7 @@ def runs_stably(nodes, triangles, poisson, steps=2000):
     return advance_below(model, steps, 30 * model.kinetic(), 50)
 
 
-def base_stiffness(angle, poisson):
+def base_stiffness(angle: float, poisson: float) -> float:
     """Stiffness [N/m] by (5) of the base of an isosceles triangle, apex angle [deg]."""
     net = plugin.Membrane(
         material=scene.film(poisson=poisson),
@@ -91,7 +96,7 @@ def base_stiffness(angle, poisson):
     return net.stiffnesses[0]
 
 
-def zero_angle(poisson, kind="uniform"):
+def zero_angle(poisson: float, kind: str = "uniform") -> float:
     """Apex angle [deg] at which a base, alone or beside an equilateral one, has no stiffness."""
     beside = base_stiffness(60.0, poisson) if kind == "mixed" else 0.0
 
@@ -101,7 +106,7 @@ def zero_angle(poisson, kind="uniform"):
     return bisect(negative, 90.0, 179.0, rounds=30)
 
 
-def run(quick):
+def run(quick: bool) -> str:
     """Scan both sheets; returns a line of text."""
     angles = np.arange(80.0, 171.0, 30.0 if quick else 7.5)
     ratios = np.linspace(-0.5, 0.5, 3 if quick else 6)
@@ -136,7 +141,7 @@ def run(quick):
     )
 
 
-def draw(rows, curves, path):
+def draw(rows: list[list], curves: dict[str, list[tuple[float, float]]], path: Path) -> None:
     """Stable and unstable sheets over apex angle and Poisson's ratio."""
     drawing, axes = figure(columns=2)
     for axis, kind in zip(axes[0], ("uniform", "mixed")):

@@ -9,9 +9,12 @@ go taut and buckle again and again: there the limit is where the sum of kinetic,
 energy doubles within 600 steps.
 """
 
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 from membrane import scene
-from membrane.mesh import sail_mesh, tip_masses
+from membrane.mesh import SailMesh, sail_mesh, tip_masses
 from membrane.mesh.fold import fold
 
 from .common import Model, O, bisect, figure, folder, grows, save, write_table
@@ -35,7 +38,15 @@ HEADER = (
 )
 
 
-def sail(refine=1, zeta=0.0, beta=0.0, law="paper", segments=4, tip=TIP_MASS, turned=False):
+def sail(
+    refine: int = 1,
+    zeta: float = 0.0,
+    beta: float = 0.0,
+    law: str = "paper",
+    segments: int = 4,
+    tip: float = TIP_MASS,
+    turned: bool = False,
+) -> tuple[SailMesh, Model]:
     """The paper's sail without spool, in a scene; `turned`: mountains taken for valleys.
 
     Returns the mesh and a Model.
@@ -56,7 +67,7 @@ def sail(refine=1, zeta=0.0, beta=0.0, law="paper", segments=4, tip=TIP_MASS, tu
     return mesh, model
 
 
-def placed(mesh, state):
+def placed(mesh: SailMesh, state: str) -> np.ndarray:
     """Positions (N, 3) [m] of the sail's nodes in a state by name."""
     if state in ("folded", "overlapping"):
         return fold(mesh)
@@ -69,7 +80,9 @@ def placed(mesh, state):
     return positions
 
 
-def measure(model, positions, speed, rounds, damped=False):
+def measure(
+    model: Model, positions: np.ndarray, speed: float, rounds: int, damped: bool = False
+) -> tuple[float, float]:
     """Estimate and measured limit [s] at `positions` (N, 3) [m], perturbed at `speed` [m/s]."""
     model.balance(positions)
     estimate = model.forces.criticalTimeStep()
@@ -98,7 +111,7 @@ def measure(model, positions, speed, rounds, damped=False):
     return estimate, bisect(is_above, low, 1.2 * estimate, rounds, widen=3)
 
 
-def cases(quick):
+def cases(quick: bool) -> list[dict[str, Any]]:
     """Cases as dicts: state, speed and parameters of sail()."""
     found = []
     for state in ("flat", "taut", "buckled", "folded", "overlapping"):
@@ -121,7 +134,7 @@ def cases(quick):
     return found
 
 
-def run(quick):
+def run(quick: bool) -> str:
     """Measure all cases; returns a line of text."""
     rows = []
     for case in cases(quick):
@@ -133,7 +146,7 @@ def run(quick):
         estimate, limit = measure(
             model, placed(mesh, state), speed, rounds, options.get("zeta", 0.0) > 0
         )
-        named = {"refine": 1, "zeta": 0.0, "beta": 0.0, "law": "paper", "segments": 4}
+        named: dict = {"refine": 1, "zeta": 0.0, "beta": 0.0, "law": "paper", "segments": 4}
         values = [options.get(k, v) for k, v in {**named, "tip": TIP_MASS}.items()]
         rows.append([state, speed, *values, estimate, limit, limit / estimate])
     out = folder(quick)
@@ -149,7 +162,7 @@ def run(quick):
     )
 
 
-def draw(rows, path):
+def draw(rows: list[list], path: Path) -> None:
     """Measured over estimated step for all cases."""
     drawing, axes = figure(height=0.17 * len(rows) + 1.2, width=8)
     axis = axes[0, 0]

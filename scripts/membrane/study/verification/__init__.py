@@ -5,6 +5,7 @@ Each module has `checks(full)`, which returns a list of Check; without `full` on
 seconds. Run them by scripts/verify.py.
 """
 
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from math import isfinite
 
@@ -43,21 +44,21 @@ class Check:
     unit: str = "-"
     kind: str = TARGET
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.kind not in (TARGET, AT_MOST, MEASURED):
             raise ValueError(f"kind = {self.kind!r}: must be {TARGET!r}, {AT_MOST!r}, {MEASURED!r}")
         if not (isfinite(self.target) and self.tolerance >= 0):
             raise ValueError(f"{self.name}: target must be finite and tolerance >= 0")
 
     @property
-    def holds(self):
+    def holds(self) -> bool:
         """Whether the number is as it should be; never for one that is not finite."""
         distance = self.measured - self.target
         if self.kind != AT_MOST:
             distance = abs(distance)
         return isfinite(self.measured) and bool(distance <= self.tolerance)
 
-    def as_dict(self):
+    def as_dict(self) -> dict:
         """All attributes and `holds`, ready for JSON; a number that is not finite becomes None."""
         numbers = {
             name: float(value) if isfinite(value) else None
@@ -67,17 +68,19 @@ class Check:
         return {**asdict(self), **numbers, "holds": self.holds}
 
 
-def at_most(name, measured, most, source, unit="-"):
+def at_most(name: str, measured: float, most: float, source: str, unit: str = "-") -> Check:
     """A Check that `measured` does not exceed `most`."""
     return Check(name, measured, most, 0.0, source, unit, AT_MOST)
 
 
-def recorded(name, value, last, tolerance, source, unit="-"):
+def recorded(
+    name: str, value: float, last: float, tolerance: float, source: str, unit: str = "-"
+) -> Check:
     """A Check that records `value`, and fails only if it is off its `last` one by `tolerance`."""
     return Check(name, value, last, tolerance, source, unit, MEASURED)
 
 
-def table(module, found):
+def table(module: str, found: Iterable[Check]) -> list[str]:
     """Lines of text that show a list of Check of a module."""
     head = ("", "measured", "target", "tolerance", "unit", "")
     signs = {TARGET: "", AT_MOST: "<= ", MEASURED: "last "}

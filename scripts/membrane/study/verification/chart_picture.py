@@ -2,6 +2,7 @@
 """The picture of scripts/chart.py: error against processor time, with the Pareto fronts."""
 
 import itertools
+from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -25,7 +26,7 @@ AROUND = (20, -20, 160, 200, 90, -90, 50, -50, 130, -130)  # directions tried in
 CLEAR = 9  # of a label from other points [pixels]
 
 
-def draw(points, path):
+def draw(points: list, path: Path | str) -> Figure:
     """Draw the three questions side by side.
 
     Parameters
@@ -34,10 +35,6 @@ def draw(points, path):
         Of scripts/chart.py.
     path : path
         Picture to write.
-
-    Returns
-    -------
-    Figure
     """
     figure = Figure(figsize=(10.5, 4.8), dpi=150)
     figure.subplots_adjust(left=0.07, right=0.99, bottom=0.26, top=0.94, wspace=0.3)
@@ -131,7 +128,7 @@ def _write(axes, words, point, away, angle):
     )
 
 
-def words_box(label):
+def words_box(label: Text) -> Bbox:
     """Where the words of an annotation are, without its line [pixels]."""
     label.get_window_extent()  # puts them there
     return Text.get_window_extent(label)

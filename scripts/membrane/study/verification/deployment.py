@@ -5,14 +5,18 @@ Every run of one set of parameters starts from the same equilibrium, found once.
 compared early; late, where tiny differences have grown, the ensemble's mean and spread count.
 """
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 from membrane import measures, scene
 from membrane.parameters import TABLE_2_DURATION, SailParameters
 from membrane.run import driver
+from membrane.run.kind import Sail
 from membrane.view import plots
 from yade import wrapper as yade
 
@@ -83,7 +87,7 @@ class Deployment:
     angular_momentum: np.ndarray
     unexplained: np.ndarray
 
-    def at(self, time):
+    def at(self, time: float) -> int:
         """Row of the time nearest to `time` [s]."""
         return int(np.argmin(np.abs(self.times - time)))
 
@@ -98,7 +102,7 @@ def _equilibrium(p, seed):
     return built.positions()
 
 
-def equilibrium(p, seed=0):
+def equilibrium(p: SailParameters, seed: int = 0) -> np.ndarray:
     """Positions (N, 3) [m] of the folded sail at rest in the turning frame; computed once.
 
     Other seeds than 0: with the folded sail `perturbed` before the spin-up.
@@ -107,7 +111,9 @@ def equilibrium(p, seed=0):
     return _equilibrium(replace(p, dt=default.dt, duration=default.duration), seed)
 
 
-def begin(p, positions, ledger=True):
+def begin(
+    p: SailParameters, positions: np.ndarray, ledger: bool = True
+) -> tuple[Sail, scene.MembraneScene]:
     """Build the sail of parameters `p`, put its nodes at `positions` (N, 3) [m], release it.
 
     Returns
@@ -123,7 +129,9 @@ def begin(p, positions, ledger=True):
     return sail, built
 
 
-def deploy(p, interval, *, positions=None, ledger=False):
+def deploy(
+    p: SailParameters, interval: float, *, positions: np.ndarray | None = None, ledger: bool = False
+) -> Deployment:
     """Release the sail and run it for p.duration.
 
     Parameters
@@ -135,29 +143,15 @@ def deploy(p, interval, *, positions=None, ledger=False):
         Where to start [m]; default: the equilibrium.
     ledger : bool
         Keep the ledger.
-
-    Returns
-    -------
-    Deployment
     """
     start = equilibrium(p) if positions is None else positions
     return follow(*begin(p, start, ledger), p, interval)
 
 
-def follow(sail, built, p, interval):
-    """Run a released sail for p.duration, with rows every `interval` [s], a multiple of p.dt.
-
-    Parameters
-    ----------
-    sail : Sail
-    built : MembraneScene
-    p : SailParameters
-    interval : float
-
-    Returns
-    -------
-    Deployment
-    """
+def follow(
+    sail: Sail, built: scene.MembraneScene, p: SailParameters, interval: float
+) -> Deployment:
+    """Run a released sail for p.duration, with rows every `interval` [s], a multiple of p.dt."""
     stride, rows = round(interval / p.dt), round(p.duration / interval)
     if rows < 1 or abs(stride * p.dt / interval - 1) > 1e-9:
         raise ValueError(f"interval = {interval} s must be a multiple of dt = {p.dt} s")
@@ -179,14 +173,14 @@ def follow(sail, built, p, interval):
     )
 
 
-def perturbed(positions, seed):
+def perturbed(positions: np.ndarray, seed: int) -> np.ndarray:
     """`positions` (N, 3) [m], each coordinate off by about PERTURBATION."""
     noise = np.random.default_rng(seed).standard_normal(positions.shape)
     return positions + PERTURBATION * noise
 
 
 @cache
-def ensemble():
+def ensemble() -> list[Deployment]:
     """MEMBERS runs of the default parameters; all but the first start perturbed.
 
     The first keeps the ledger.
@@ -198,7 +192,7 @@ def ensemble():
     return [first, *rest]
 
 
-def rms(difference):
+def rms(difference: np.ndarray) -> np.ndarray:
     """Root mean square over all nodes of differences (..., N, 3) [m] of positions."""
     return np.sqrt(np.mean(np.sum(difference**2, axis=-1), axis=-1))
 
@@ -206,7 +200,9 @@ def rms(difference):
 # --- order in time ---
 
 
-def step_errors(steps, reference, duration, **changes):
+def step_errors(
+    steps: Iterable[float], reference: float, duration: float, **changes: Any
+) -> np.ndarray:
     """Errors (len(steps),) [m] of positions at `duration` [s] against a run at step `reference`.
 
     `changes` go to SailParameters; the equilibrium is that of the defaults.
@@ -217,10 +213,10 @@ def step_errors(steps, reference, duration, **changes):
     return np.array([rms(r.positions[-1] - runs[-1].positions[-1]) for r in runs[:-1]])
 
 
-def order_checks(full):
+def order_checks(full: bool) -> list[Check]:
     """Order of the time integration, part by part and of all together."""
     smooth = {**UNDAMPED, **UNBUCKLED}
-    cases = [
+    cases: list[tuple[str, dict, float]] = [
         ("smooth: no damping, no buckling", smooth, 0.1),
         ("sides buckle, no damping", UNDAMPED, 0.25),
         ("damping, no buckling", UNBUCKLED, 0.1),
@@ -250,7 +246,7 @@ def order_checks(full):
 # --- ledgers ---
 
 
-def energy_errors(p):
+def energy_errors(p: SailParameters) -> tuple[float, float, float, float]:
     """Where the energy of the sides goes astray, run from the release for p.duration.
 
     The leapfrog's work is the mean of a side's forces at both ends of a step times its motion;
@@ -292,7 +288,7 @@ def energy_errors(p):
     return float(kinks), float(turns), built.ledger.balance, built.ledger.kinkError
 
 
-def ledger_checks():
+def ledger_checks() -> list[Check]:
     """Energy and angular momentum of the whole run, and what breaks the energy's balance."""
     p = SailParameters(duration=LEDGER_TIME)
     runs = {LEDGER_STEPS[0]: ensemble()[0]}
@@ -336,7 +332,7 @@ def ledger_checks():
 
 
 @cache
-def early(refine, dt, seed=0):
+def early(refine: int, dt: float | None, seed: int = 0) -> Deployment:
     """The run up to the last of EARLY_TIMES; `dt` None: MESH_STEP of the critical one.
 
     `seed`: of the `equilibrium` from which it is released.
@@ -392,7 +388,7 @@ LAST_MESHES = {
 }
 
 
-def step_checks():
+def step_checks() -> list[Check]:
     """Rate and phase difference at early times, and how they change with the step."""
     runs = {f"dt = {dt:g} s": early(1, dt) for dt in STEPS}
     base = next(iter(runs))
@@ -414,7 +410,7 @@ def step_checks():
     return found
 
 
-def mesh_checks():
+def mesh_checks() -> list[Check]:
     """Rate and phase difference at early times on each mesh: mean and spread over spin-ups.
 
     The finer the film, the more shapes there are in which it can come to rest.
@@ -430,7 +426,9 @@ def mesh_checks():
 # --- ensemble ---
 
 
-def spread_checks(runs, last, source, title=""):
+def spread_checks(
+    runs: Sequence[Deployment], last: dict, source: str, title: str = ""
+) -> list[Check]:
     """Mean and spread of rate and phase difference [deg] over `runs`, at the times of `last`.
 
     Parameters
@@ -440,10 +438,6 @@ def spread_checks(runs, last, source, title=""):
         Last ((mean, spread) of the rate, (mean, spread) of the phase difference) by time [s].
     source, title : str
         Of the checks; what their names begin with.
-
-    Returns
-    -------
-    list of Check
     """
     rates, phases = np.array([r.rate for r in runs]), np.degrees([r.phase for r in runs])
     found = []
@@ -459,7 +453,9 @@ def spread_checks(runs, last, source, title=""):
     return found
 
 
-def growth_times(times, distances, within):
+def growth_times(
+    times: np.ndarray, distances: np.ndarray, within: tuple[float, float]
+) -> np.ndarray:
     """Times [s] in which distances (M, S) [m] between runs grow by e while they are `within`.
 
     Straight lines through the logarithms, from a distance's last row below the lower of the two
@@ -474,13 +470,13 @@ def growth_times(times, distances, within):
     return np.array(found)
 
 
-def draw(runs, distances, path):
+def draw(runs: Sequence[Deployment], distances: np.ndarray, path: Path) -> None:
     """Rates, phases and distances (M, S) [m] of the ensemble `runs` over time, to `path`."""
     figure = Figure(figsize=(7, 8), layout="constrained")
     rate, phase, growth = figure.subplots(3, 1)
     times = runs[0].times
-    columns = (rate, [r.rate for r in runs]), (phase, np.degrees([r.phase for r in runs]))
-    for axes, values in columns:
+    phases = np.degrees([r.phase for r in runs])
+    for axes, values in (rate, np.array([r.rate for r in runs])), (phase, phases):
         mean, spread = np.mean(values, axis=0), np.std(values, axis=0, ddof=1)
         axes.plot(times, np.transpose(values), color="C1", linewidth=0.5, alpha=0.7)
         axes.plot(times, mean, color="C0", label="mean")
@@ -513,7 +509,7 @@ LAST_MEANS = {
 }
 
 
-def ensemble_checks():
+def ensemble_checks() -> list[Check]:
     """Growth of tiny differences, and mean and spread over the ensemble, early and late."""
     runs = ensemble()
     times = runs[0].times
@@ -534,7 +530,7 @@ def ensemble_checks():
     return found + spread_checks(runs, LAST_MEANS, source)
 
 
-def checks(full):
+def checks(full: bool) -> list[Check]:
     """Checks of the deployment: order in time; `full`, also ledgers, meshes and the ensemble."""
     found = order_checks(full)
     if full:

@@ -11,7 +11,7 @@ from ..sources import paper
 MAP_STEPS = 400
 
 
-def disk_mesh(cells, even=True):
+def disk_mesh(cells: int, even: bool = True) -> tuple[np.ndarray, np.ndarray]:
     """A hexagon of equilateral triangles, bent to a disk of radius 1 m.
 
     Parameters
@@ -51,14 +51,14 @@ def disk_mesh(cells, even=True):
     return np.column_stack([place.real, place.imag, np.zeros(len(place))]), triangles
 
 
-def hexagon_to_disk(z):
+def hexagon_to_disk(z: np.ndarray) -> np.ndarray:
     """Conformal map of the hexagon with a corner at 1 to the unit disk: complex numbers (N,).
 
     By Schwarz and Christoffel dz/dw is proportional to (1 - w^6)^(-1/3); integrated from the
     centre straight to each point by the fourth-order Runge-Kutta method.
     """
 
-    def slope(w):
+    def slope(w: np.ndarray) -> np.ndarray:
         return (1 - w**6) ** (1 / 3)
 
     corner = gamma(1 / 6) * gamma(2 / 3) / gamma(5 / 6) / 6  # of the hexagon that has slope 1 at 0
@@ -72,7 +72,7 @@ def hexagon_to_disk(z):
     return w
 
 
-def hexagon_to_rings(z, radius):
+def hexagon_to_rings(z: np.ndarray, radius: np.ndarray) -> np.ndarray:
     """Each hexagon about the centre, (N,) complex, to a circle of `radius` (N,), evenly."""
     sector = np.floor(np.angle(z) / (np.pi / 3) + 1e-9)
     turned = z * np.exp(-1j * np.pi / 3 * sector)  # between the corners at 0 and 60 degrees
@@ -80,12 +80,14 @@ def hexagon_to_rings(z, radius):
     return radius * np.exp(1j * np.pi / 3 * (sector + share))
 
 
-def scatter(nodes, values, count):
+def scatter(nodes: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
     """Sum of `values` (K, D) over equal entries of `nodes` (K,): (count, D)."""
     return np.column_stack([np.bincount(nodes, column, count) for column in values.T])
 
 
-def side_stiffness(nodes, triangles, young, poisson, thickness):
+def side_stiffness(
+    nodes: np.ndarray, triangles: np.ndarray, young: float, poisson: float, thickness: float
+) -> np.ndarray:
     """Stiffness [N/m] by (5) that each triangle gives to its sides, (T, 3).
 
     Columns: sides (0, 1), (1, 2), (2, 0).
@@ -95,7 +97,9 @@ def side_stiffness(nodes, triangles, young, poisson, thickness):
     return np.roll(opposite, 1, axis=1)  # the side opposite corner 2 is (0, 1)
 
 
-def triangle_stress(nodes, triangles, shares, rest, thickness):
+def triangle_stress(
+    nodes: np.ndarray, triangles: np.ndarray, shares: np.ndarray, rest: np.ndarray, thickness: float
+) -> np.ndarray:
     """Stress [Pa] in the plane, (T, 2, 2), from the tensions of the sides (virial formula).
 
     Each triangle has three springs, its shares of the sides; with tension f, length L and unit

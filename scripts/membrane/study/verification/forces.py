@@ -7,17 +7,22 @@ flat state, so that neighbouring triangles differ in height. Nothing moves: the 
 an integrator and what they add to O.forces is read.
 """
 
+from collections import Counter, defaultdict
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import product
+from typing import Any
 
 import membrane
 import numpy as np
 from membrane import scene
 from membrane.mesh import sail_mesh
 from membrane.mesh.fold import fold
+from numpy.typing import ArrayLike
 from yade import wrapper as yade
 
 from ..sources import paper
-from . import at_most, recorded
+from . import Check, at_most, recorded
 
 YOUNG, POISSON, DENSITY, THICKNESS = 3.2e9, 0.34, 1420.0, 7.5e-6
 ALPHA, ALPHA_CREASE = 100.0, 1000.0
@@ -47,8 +52,11 @@ AT_PUSHED = ", at tethers it would push"
 AT_EITHER = ", at either"
 EFFECT = ": effect of the bound"
 
-FAST = {"sail": ({}, (0,)), "uneven sail": ({"jitter": 3e-3}, (0,))}  # options of the sail, seeds
-FULL = {
+Options = dict[str, tuple[dict, tuple[int, ...]]]  # of the sail, and seeds, by its name
+Pairs = dict[str, tuple[Any, Any]]  # by title: the plugin's, the reference's
+
+FAST: Options = {"sail": ({}, (0,)), "uneven sail": ({"jitter": 3e-3}, (0,))}
+FULL: Options = {
     "sail": ({}, (0, 1, 2)),
     "uneven sail": ({"jitter": 3e-3}, (0, 1, 2)),
     "sail, refine 2": ({"refine": 2}, (0,)),
@@ -103,7 +111,7 @@ class StandingSail:
         As paper.crease_angle wants it.
     """
 
-    def __init__(self, jitter=0.0, refine=1):
+    def __init__(self, jitter: float = 0.0, refine: int = 1) -> None:
         self.omega = yade.Omega()
         self.omega.reset()
         self.mesh = mesh = sail_mesh(refine=refine)
@@ -159,22 +167,22 @@ class StandingSail:
         # Triangles run counter-clockwise seen from above, where a mountain sticks out.
         self.inside = -mesh.crease_signs
 
-    def shapes(self):
+    def shapes(self) -> list[str]:
         """Names of the SHAPES that this sail can take; the folded one is made for the even mesh."""
         return [name for name in SHAPES if name != "folded" or np.all(self.rest == self.mesh.nodes)]
 
-    def place(self, state):
+    def place(self, state: State) -> None:
         """Put the bodies into a State."""
         for body, x, v in zip(self.states, state.positions.tolist(), state.velocities.tolist()):
             body.pos, body.vel = x, v
 
-    def forces(self, *engines):
+    def forces(self, *engines: yade.Engine) -> np.ndarray:
         """Forces (N, 3) [N] that engines add in the present state."""
         self.omega.engines = [yade.ForceResetter(), *engines]
         self.omega.step()
         return np.array([self.omega.forces.f(i, True) for i in self.net.bodyIds])
 
-    def engine(self, **options):
+    def engine(self, **options: Any) -> membrane.MembraneForceEngine:
         """A MembraneForceEngine of this sail."""
         return membrane.MembraneForceEngine(membrane=self.net, forceTimeStep=True, **options)
 
@@ -182,14 +190,14 @@ class StandingSail:
 # --- states ---
 
 
-def turned(rng, positions):
+def turned(rng: np.random.Generator, positions: np.ndarray) -> np.ndarray:
     """Positions (N, 3) [m] turned at random and moved by some centimetres."""
     matrix, _ = np.linalg.qr(rng.normal(size=(3, 3)))
     matrix *= np.sign(np.linalg.det(matrix))
     return positions @ matrix.T + 0.05 * rng.normal(size=3)
 
 
-def flat(sail, rng):
+def flat(sail: StandingSail, rng: np.random.Generator) -> np.ndarray:
     """The flat sail, its nodes off by a tenth of a millimetre, those of tethers by a micrometre.
 
     Tethers are stretched by so much that the last digit of a length is 1e-13 of the tension.
@@ -203,12 +211,12 @@ def flat(sail, rng):
     return moved + off * rng.normal(size=moved.shape)
 
 
-def crumpled(sail, rng):
+def crumpled(sail: StandingSail, rng: np.random.Generator) -> np.ndarray:
     """Nodes off by a quarter of a cell: creases at any angle."""
     return sail.rest + 5e-3 / sail.mesh.refine * rng.normal(size=sail.rest.shape)
 
 
-def buckled(sail, rng):
+def buckled(sail: StandingSail, rng: np.random.Generator) -> np.ndarray:
     """Compressed by 3 %, stretched by 1 % across, with waves out of the plane."""
     x, y, _ = sail.rest.T
     waves = 4e-3 * np.sin(2 * np.pi * x / 0.07) * np.cos(2 * np.pi * y / 0.11)
@@ -216,12 +224,12 @@ def buckled(sail, rng):
     return bent + 1e-5 * rng.normal(size=bent.shape)
 
 
-def folded(sail, rng):
+def folded(sail: StandingSail, rng: np.random.Generator) -> np.ndarray:
     """The folded sail, shaken by as much as its layers lie apart: some pass through each other."""
     return fold(sail.mesh) + 1e-4 * rng.normal(size=sail.rest.shape)
 
 
-def collapsed(sail, rng):
+def collapsed(sail: StandingSail, rng: np.random.Generator) -> np.ndarray:
     """The flat sail with some creases whose C is almost on AB, and some with B almost at A."""
     moved = flat(sail, rng)
     chosen = sail.creases[:: len(sail.creases) // 9]
@@ -243,7 +251,7 @@ SHAPES = {
 }
 
 
-def random_state(sail, shape, seed=0):
+def random_state(sail: StandingSail, shape: str, seed: int = 0) -> State:
     """State of one of SHAPES, turned, with velocities of some metres a second."""
     rng = np.random.default_rng([seed, list(SHAPES).index(shape)])
     positions = turned(rng, SHAPES[shape](sail, rng))
@@ -253,7 +261,7 @@ def random_state(sail, shape, seed=0):
 # --- plugin against reference ---
 
 
-def difference(found, expected):
+def difference(found: ArrayLike, expected: ArrayLike) -> float:
     """Largest difference of two arrays over the largest value of the expected one [-]."""
     found, expected = np.asarray(found), np.asarray(expected)
     largest = np.abs(expected).max()
@@ -262,7 +270,7 @@ def difference(found, expected):
     return float(np.abs(found - expected).max() / largest)
 
 
-def rest_pairs(sail):
+def rest_pairs(sail: StandingSail) -> Pairs:
     """What follows from the rest state: {title: (plugin's, reference's)}."""
     net = sail.net
     shortening = np.array(net.restLengths) - net.criticalLengths
@@ -275,7 +283,7 @@ def rest_pairs(sail):
     }
 
 
-def scalar_pairs(sail, state):
+def scalar_pairs(sail: StandingSail, state: State) -> Pairs:
     """Tensions, angles and energies in a State: {title: (plugin's, reference's)}."""
     sail.place(state)
     x = state.positions
@@ -295,7 +303,9 @@ def scalar_pairs(sail, state):
     return pairs
 
 
-def collapsed_creases(sail, state, names=("length", *HEIGHTS)):
+def collapsed_creases(
+    sail: StandingSail, state: State, names: Sequence[str] = ("length", *HEIGHTS)
+) -> np.ndarray:
     """Which creases (C,) bool of a State are collapsed: one of these names is bounded."""
     now = paper.crease_frame(state.positions, sail.creases)
     rest = paper.crease_frame(sail.rest, sail.creases)
@@ -303,7 +313,7 @@ def collapsed_creases(sail, state, names=("length", *HEIGHTS)):
     return np.min(shares, axis=0) < paper.COLLAPSED
 
 
-def crease_pairs(sail, state, **bound):
+def crease_pairs(sail: StandingSail, state: State, **bound: Any) -> Pairs:
     """Forces (N, 3) [N] of the creases by both laws: {title: (plugin's, reference's)}.
 
     bound: nothing, or `collapsed` of the reference.
@@ -321,7 +331,7 @@ def crease_pairs(sail, state, **bound):
     return pairs
 
 
-def damping_pairs(sail, state, **bound):
+def damping_pairs(sail: StandingSail, state: State, **bound: Any) -> Pairs:
     """Forces (N, 3) [N] of damping: {title: (plugin's, reference's)}.
 
     bound: nothing, or `may_push` of the reference.
@@ -335,7 +345,7 @@ def damping_pairs(sail, state, **bound):
     return pairs
 
 
-def force_pairs(sail, state):
+def force_pairs(sail: StandingSail, state: State) -> Pairs:
     """Forces (N, 3) [N] of each term in a State: {title: (plugin's, reference's)}."""
     sail.place(state)
     x, v = state.positions, state.velocities
@@ -357,7 +367,7 @@ def force_pairs(sail, state):
     return pairs
 
 
-def pushed_tethers(sail, state, zeta):
+def pushed_tethers(sail: StandingSail, state: State, zeta: float) -> np.ndarray:
     """Which sides (S,) bool are taut tethers whose damping by zeta would exceed their tension."""
     direction, length = paper.side_geometry(state.positions, sail.sides)
     ends = state.velocities[sail.sides]
@@ -367,7 +377,7 @@ def pushed_tethers(sail, state, zeta):
     return sail.cable & (length > sail.lengths) & (tension + damping < 0)
 
 
-def bounded_nodes(sail, state):
+def bounded_nodes(sail: StandingSail, state: State) -> Callable[[str], tuple[np.ndarray, str]]:
     """Where bounds act on the forces of a State: function of a title -> (nodes (N,) bool, name)."""
     nodes = np.arange(len(sail.rest))
     low = np.isin(nodes, sail.creases[collapsed_creases(sail, state)])
@@ -382,7 +392,7 @@ def bounded_nodes(sail, state):
     )
 
 
-def state_differences(sail, state):
+def state_differences(sail: StandingSail, state: State) -> dict[str, float]:
     """Differences of plugin and reference in a State: {title: [-]}.
 
     Forces at nodes where bounds act are told apart from the others.
@@ -397,7 +407,7 @@ def state_differences(sail, state):
     return differences
 
 
-def bound_effects(sail, state):
+def bound_effects(sail: StandingSail, state: State) -> dict[str, float]:
     """What the bounds change in a State where they act: {title: [-]}.
 
     The largest difference of the plugin's forces and those of the equations, without bounds, over
@@ -413,19 +423,19 @@ def bound_effects(sail, state):
     return effects
 
 
-def law_difference(sail):
+def law_difference(sail: StandingSail) -> float:
     """Difference [-] of the two crease laws in the flat rest state, natural angle 0."""
     sail.place(State(sail.rest, np.zeros_like(sail.rest)))
     engines = (sail.engine(beta=BETA, creaseLaw=law) for law in ("paper", "conservative"))
     return difference(*(sail.forces(engine) for engine in engines))
 
 
-def branches(sail, state):
+def branches(sail: StandingSail, state: State) -> dict[str, int]:
     """How many sides and creases a State has on each branch of their laws."""
     _, length = paper.side_geometry(state.positions, sail.sides)
     theta = paper.crease_angle(state.positions, sail.creases, sail.inside)
     below = length < sail.critical
-    return {
+    found = {
         "sides stretched": np.sum(~sail.cable & ~below),
         "sides buckled": np.sum(~sail.cable & below),
         "tethers taut": np.sum(sail.cable & ~below),
@@ -437,12 +447,15 @@ def branches(sail, state):
         "creases of bounded height": np.sum(collapsed_creases(sail, state, HEIGHTS)),
         "tethers pushed": np.sum(pushed_tethers(sail, state, STRONG)),
     }
+    return {branch: int(count) for branch, count in found.items()}
 
 
 # --- forces against differences of energy ---
 
 
-def gradient(sail, state, energy, nodes, step):
+def gradient(
+    sail: StandingSail, state: State, energy: Callable[[], float], nodes: np.ndarray, step: float
+) -> np.ndarray:
     """Minus the gradient (n, 3) [N] of energy() [J] at `nodes` (n,), by moving bodies.
 
     Central differences of fourth order: those of one and of two `step` [m].
@@ -463,7 +476,7 @@ def gradient(sail, state, energy, nodes, step):
     return forces
 
 
-def smooth_nodes(count, groups, near):
+def smooth_nodes(count: int, groups: np.ndarray, near: np.ndarray) -> np.ndarray:
     """Nodes (n,) of `count` that are in none of the `groups` (G, K) flagged by `near` (G,).
 
     The energies have kinks, across which differences say nothing. Of many nodes, only some.
@@ -472,7 +485,7 @@ def smooth_nodes(count, groups, near):
     return nodes[:: 1 + len(nodes) // ASKED]
 
 
-def side_difference(sail, state):
+def side_difference(sail: StandingSail, state: State) -> tuple[float, int]:
     """Error of the sides' forces against strain energy [-], and the number of nodes asked."""
     sail.place(state)
     forces = sail.forces(sail.loop)
@@ -483,7 +496,7 @@ def side_difference(sail, state):
     return difference(forces[nodes], expected), len(nodes)
 
 
-def crease_difference(sail, state, theta0):
+def crease_difference(sail: StandingSail, state: State, theta0: float) -> tuple[float, int]:
     """The same for the creases' forces of the conservative law with natural angle theta0 [rad]."""
     sail.place(state)
     engine = sail.engine(beta=BETA, gamma=GAMMA, theta0=theta0, creaseLaw="conservative")
@@ -502,7 +515,7 @@ def crease_difference(sail, state, theta0):
     return difference(forces[nodes], expected), len(nodes)
 
 
-def field_difference(sail, state):
+def field_difference(sail: StandingSail, state: State) -> tuple[float, int]:
     """The same for the centrifugal field."""
     sail.place(state)
     field = membrane.CentrifugalField(membrane=sail.net, omega=OMEGA)
@@ -512,7 +525,7 @@ def field_difference(sail, state):
     return difference(forces[nodes], expected), len(nodes)
 
 
-def energy_differences(sail, state):
+def energy_differences(sail: StandingSail, state: State) -> dict[str, tuple[float, int]]:
     """{title: (error [-], number of nodes asked)} of all conservative forces in a State."""
     return {
         "sides": side_difference(sail, state),
@@ -525,13 +538,51 @@ def energy_differences(sail, state):
 # --- checks ---
 
 
-def bound_checks(full, effects, seen, states):
-    """Recorded checks of what the bounds change and how often they act.
+class Survey:
+    """What was found in all states: errors and effects with the state's label, by title.
 
-    effects: {title: [(effect [-], state's name)]}; seen: sums of `branches`; states: their number.
+    Attributes
+    ----------
+    agreement, effects, energies : dict of list
+        (error or effect [-], label, …) by title.
+    laws : dict of float
+        `law_difference` by the sail's name.
+    seen : Counter
+        Sums of `branches`.
+    states : int
+        Their number.
     """
-    numbers = {}
-    for title, results in effects.items():
+
+    def __init__(self) -> None:
+        self.agreement: dict[str, list] = defaultdict(list)
+        self.effects: dict[str, list] = defaultdict(list)
+        self.energies: dict[str, list] = defaultdict(list)
+        self.laws: dict[str, float] = {}
+        self.seen: Counter = Counter()
+        self.states = 0
+
+    def look_at_sail(self, name: str, sail: StandingSail) -> None:
+        """Compare what holds for a sail in any state."""
+        self.laws[name] = law_difference(sail)
+        for title, pair in rest_pairs(sail).items():
+            self.agreement[title].append((difference(*pair), name))
+
+    def look_at(self, label: str, sail: StandingSail, state: State) -> None:
+        """Compare what depends on the State."""
+        self.states += 1
+        for title, error in state_differences(sail, state).items():
+            self.agreement[title].append((error, label))
+        for title, effect in bound_effects(sail, state).items():
+            self.effects[title].append((effect, label))
+        for title, (error, asked) in energy_differences(sail, state).items():
+            self.energies[title].append((error, label, asked))
+        self.seen.update(branches(sail, state))
+
+
+def bound_checks(full: bool, survey: Survey) -> list[Check]:
+    """Recorded checks of what the bounds change and how often they act."""
+    numbers, seen, states = {}, survey.seen, survey.states
+    for title, results in survey.effects.items():
         effect, label = max(results)
         source = f"reference/forces.py without it; in {len(results)} of {states} states, most: "
         numbers[title] = effect, source + label
@@ -551,44 +602,33 @@ def bound_checks(full, effects, seen, states):
     return found
 
 
-def checks(full):
+def checks(full: bool) -> list[Check]:
     """Checks of all forces, over all sails and states; `full`, three seeds and a refined sail."""
-    agreement, effects, energies, laws, seen, states = {}, {}, {}, {}, {}, 0
+    survey = Survey()
     for name, (options, seeds) in (FULL if full else FAST).items():
         sail = StandingSail(**options)
-        laws[name] = law_difference(sail)
-        for title, pair in rest_pairs(sail).items():
-            agreement.setdefault(title, []).append((difference(*pair), name))
-        for shape, seed in ((shape, seed) for shape in sail.shapes() for seed in seeds):
-            state, label = random_state(sail, shape, seed), f"{name}, {shape}"
-            states += 1
-            for title, error in state_differences(sail, state).items():
-                agreement.setdefault(title, []).append((error, label))
-            for title, effect in bound_effects(sail, state).items():
-                effects.setdefault(title, []).append((effect, label))
-            for title, (error, asked) in energy_differences(sail, state).items():
-                energies.setdefault(title, []).append((error, label, asked))
-            for branch, count in branches(sail, state).items():
-                seen[branch] = seen.get(branch, 0) + int(count)
-    empty = [branch for branch, count in seen.items() if not count]
+        survey.look_at_sail(name, sail)
+        for shape, seed in product(sail.shapes(), seeds):
+            survey.look_at(f"{name}, {shape}", sail, random_state(sail, shape, seed))
+    empty = [branch for branch, count in survey.seen.items() if not count]
     if empty:
-        raise RuntimeError(f"the {states} states have no {', no '.join(empty)}")
+        raise RuntimeError(f"the {survey.states} states have no {', no '.join(empty)}")
 
     found = []
-    for title, results in agreement.items():
+    for title, results in survey.agreement.items():
         error, label = max(results)
         source = f"reference/forces.py; worst of {len(results)}: {label}"
         most = SHORTENING if title.startswith("L0") else AGREEMENT
         found.append(at_most(f"{title}: plugin - reference", error, most, source))
-    found += bound_checks(full, effects, seen, states)
-    for title, results in energies.items():
+    found += bound_checks(full, survey)
+    for title, results in survey.energies.items():
         error, label, _ = max(results)
         source = (
             f"central differences of energy at {sum(asked for *_, asked in results)} nodes "
             f"away from kinks; worst of {len(results)}: {label}"
         )
         found.append(at_most(f"{title}: force + gradient of energy", error, DIFFERENCE, source))
-    even = max(error for name, error in laws.items() if not name.startswith("uneven"))
+    even = max(error for name, error in survey.laws.items() if not name.startswith("uneven"))
     source = "model.md: the laws agree where heights are equal and theta0 = 0"
     found.append(at_most("creases, flat: paper - conservative", even, AGREEMENT, source))
     return found

@@ -12,6 +12,7 @@ the direction of the change is held against the paper, not its size.
 """
 
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -22,12 +23,15 @@ from membrane.view.plots import save
 
 from ..sources import REFERENCE
 from . import Check, at_most, recorded
-from .deployment import DURATION, INTERVAL, deploy, ensemble, equilibrium, perturbed
+from .deployment import DURATION, INTERVAL, Deployment, deploy, ensemble, equilibrium
+from .deployment import perturbed
 
 PICTURE = REFERENCE / "table2.png"
 ALPHA_CREASE, BETA = TABLE_2_CASES["alpha_crease"], TABLE_2_CASES["beta"]
 OTHER, OTHER_MEMBERS = (1000.0, 0.0), 3  # a second case whose spread is measured
 SPREADS = 2  # standard deviations of a change that count as none
+
+Case = tuple[float, float]  # alpha_c, beta
 
 # Last values.
 LAST = {
@@ -66,7 +70,7 @@ SPREAD_SOURCE = "standard deviation over the ensemble"
 
 
 @cache
-def case(alpha_crease, beta):
+def case(alpha_crease: float, beta: float) -> Deployment:
     """The run of one case; that of the default parameters is the ensemble's first."""
     p = SailParameters(alpha_crease=alpha_crease, beta=beta, duration=DURATION)
     if p == SailParameters(duration=DURATION):
@@ -75,7 +79,7 @@ def case(alpha_crease, beta):
 
 
 @cache
-def others():
+def others() -> list[Deployment]:
     """The runs of the case OTHER: its own, and OTHER_MEMBERS - 1 that start perturbed."""
     p = SailParameters(alpha_crease=OTHER[0], beta=OTHER[1], duration=DURATION)
     start = equilibrium(p)
@@ -83,7 +87,7 @@ def others():
     return [case(*OTHER), *rest]
 
 
-def draw(runs, swings, path):
+def draw(runs: dict[Case, Deployment], swings: dict[Case, tuple[float, float]], path: Path) -> None:
     """Phase difference of the cases (dict of Deployment) and their swings (dict), to `path`."""
     figure = Figure(figsize=(10, 4), layout="constrained")
     curves, marks = figure.subplots(1, 2, width_ratios=(1.6, 1))
@@ -109,7 +113,7 @@ def draw(runs, swings, path):
     save(figure, path, dpi=110)
 
 
-def claims(kind, values, spread, unit):
+def claims(kind: str, values: dict[Case, float], spread: float, unit: str) -> list[Check]:
     """Checks of how `values` (dict by case) change along alpha_c and beta."""
     found, along_beta = [], []
     for alpha_crease in ALPHA_CREASE:
@@ -140,7 +144,7 @@ def claims(kind, values, spread, unit):
     return checks_found
 
 
-def known_swing():
+def known_swing() -> list[Check]:
     """Check of `lag_and_half_period` on a curve whose extremes are known."""
     times = np.linspace(0, 2, 2001)
     lag, half = lag_and_half_period(times, -np.radians(30) * np.sin(np.pi * times))
@@ -151,7 +155,7 @@ def known_swing():
     ]
 
 
-def checks(full):
+def checks(full: bool) -> list[Check]:
     """Checks of Table 2's cases, each of half a minute; if not `full`, of what is measured."""
     found = known_swing()
     if not full:

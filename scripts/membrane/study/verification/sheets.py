@@ -12,6 +12,7 @@ in the full one.
 import shutil
 import subprocess
 import tempfile
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import membrane
@@ -52,7 +53,7 @@ WHY = "linear, so it changes only with (5) or the mesh"
 # --- sheets ---
 
 
-def square_sheet(diagonals):
+def square_sheet(diagonals: str) -> tuple[np.ndarray, np.ndarray]:
     """Flat square sheet of CELLS x CELLS cells, cut in two: nodes (N, 3) [m], triangles (T, 3).
 
     diagonals: 'one', all alike, or 'alternating', every second one crosswise (union jack).
@@ -69,7 +70,7 @@ def square_sheet(diagonals):
     return nodes, np.concatenate([first, second])
 
 
-def equilateral_sheet():
+def equilateral_sheet() -> tuple[np.ndarray, np.ndarray]:
     """Parallelogram of equilateral triangles: nodes (N, 3) [m], triangles (T, 3)."""
     nodes, triangles = square_sheet("one")
     # The diagonal from (0, 0) to (1, 1) becomes as long as the sides at 120 degrees to each other.
@@ -77,7 +78,7 @@ def equilateral_sheet():
     return np.column_stack([x - 0.5 * y, np.sqrt(0.75) * y, z]), triangles
 
 
-def petal(refine):
+def petal(refine: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Petal 0 of the paper's sail: nodes (N, 3) [m], triangles (T, 3), nodes of both edges.
 
     The edges, inner and outer, run in order.
@@ -94,7 +95,9 @@ def petal(refine):
 # --- stiffness matrices, degrees of freedom x0, y0, x1, y1, … ---
 
 
-def springs(nodes, triangles, poisson=POISSON):
+def springs(
+    nodes: np.ndarray, triangles: np.ndarray, poisson: float = POISSON
+) -> tuple[np.ndarray, np.ndarray, float]:
     """The plugin's sides (S, 2), their stiffnesses (S,) [N/m], and the area of the sheet [m2]."""
     net = membrane.Membrane(
         material=scene.film(YOUNG, poisson, 1420.0, THICKNESS),
@@ -105,7 +108,7 @@ def springs(nodes, triangles, poisson=POISSON):
     return np.array(net.sides), np.array(net.stiffnesses), net.area
 
 
-def assemble(count, corners, blocks):
+def assemble(count: int, corners: np.ndarray, blocks: np.ndarray) -> sparse.csr_matrix:
     """Sparse matrix (2 count, 2 count) from blocks (E, 2 c, 2 c) on nodes corners (E, c)."""
     freedoms = (2 * corners[:, :, None] + np.arange(2)).reshape(len(corners), -1)
     rows = np.broadcast_to(freedoms[:, :, None], blocks.shape)
@@ -114,7 +117,9 @@ def assemble(count, corners, blocks):
     return sparse.csr_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=shape)
 
 
-def spring_matrix(nodes, triangles, poisson=POISSON):
+def spring_matrix(
+    nodes: np.ndarray, triangles: np.ndarray, poisson: float = POISSON
+) -> sparse.csr_matrix:
     """Stiffness matrix [N/m] of the springs at rest: k n n^T on both ends of each side."""
     sides, stiffness, _ = springs(nodes, triangles, poisson)
     along = (nodes[sides[:, 1]] - nodes[sides[:, 0]])[:, :2]
@@ -124,7 +129,9 @@ def spring_matrix(nodes, triangles, poisson=POISSON):
     return assemble(len(nodes), sides, blocks)
 
 
-def film_matrix(nodes, triangles, poisson=POISSON):
+def film_matrix(
+    nodes: np.ndarray, triangles: np.ndarray, poisson: float = POISSON
+) -> sparse.csr_matrix:
     """Stiffness matrix [N/m] of constant-strain triangles in plane stress."""
     corners = nodes[triangles][:, :, :2]
     opposite = np.roll(corners, -2, axis=1) - np.roll(corners, -1, axis=1)
@@ -137,13 +144,18 @@ def film_matrix(nodes, triangles, poisson=POISSON):
     return assemble(len(nodes), triangles, np.swapaxes(strain, 1, 2) @ weighted)
 
 
-def plane_stress(poisson):
+def plane_stress(poisson: float) -> np.ndarray:
     """Stiffness (3, 3) [N/m] of the film for strains xx, yy and 2 xy."""
     matrix = np.array([[1, poisson, 0], [poisson, 1, 0], [0, 0, 0.5 * (1 - poisson)]])
     return YOUNG * THICKNESS / (1 - poisson**2) * matrix
 
 
-def equilibrium(matrix, known, values, load=0.0):
+def equilibrium(
+    matrix: sparse.csr_matrix,
+    known: np.ndarray,
+    values: np.ndarray | float,
+    load: np.ndarray | float = 0.0,
+) -> np.ndarray:
     """Displacements (2 N,) [m] under a load (2 N,) [N], with `values` at the freedoms `known`."""
     free = np.setdiff1d(np.arange(matrix.shape[0]), known)
     moved = np.zeros(matrix.shape[0])
@@ -156,7 +168,7 @@ def equilibrium(matrix, known, values, load=0.0):
 # --- moduli of a sheet ---
 
 
-def lattice_stiffness(triangle, diagonals, poisson=POISSON):
+def lattice_stiffness(triangle: np.ndarray, diagonals: str, poisson: float = POISSON) -> np.ndarray:
     """Stiffness (3, 3) [N/m] of an endless sheet of copies of a triangle, in closed form.
 
     triangle: corners (3, 2) [m], the last two sides along those of the cell, which two triangles
@@ -175,7 +187,9 @@ def lattice_stiffness(triangle, diagonals, poisson=POISSON):
     return total
 
 
-def mean_stiffness(nodes, triangles, poisson=POISSON):
+def mean_stiffness(
+    nodes: np.ndarray, triangles: np.ndarray, poisson: float = POISSON
+) -> np.ndarray:
     """Stiffness (3, 3) [N/m] of a sheet of springs for mean strains xx, yy and 2 xy."""
     matrix = spring_matrix(nodes, triangles, poisson)
     area = geometry.triangle_areas(nodes, triangles).sum()
@@ -183,15 +197,13 @@ def mean_stiffness(nodes, triangles, poisson=POISSON):
     boundary = np.unique(sides[shares == 1])
     known = np.concatenate([2 * boundary, 2 * boundary + 1])
     x, y, _ = nodes.T
-    fields = []
-    for u, v in ((x, 0 * x), (0 * x, y), (0.5 * y, 0.5 * x)):
-        affine = np.column_stack([u, v]).ravel()
-        fields.append(equilibrium(matrix, known, affine[known]))
-    fields = np.array(fields)
+    strains = (x, 0 * x), (0 * x, y), (0.5 * y, 0.5 * x)
+    affine = [np.column_stack(field).ravel() for field in strains]
+    fields = np.array([equilibrium(matrix, known, field[known]) for field in affine])
     return fields @ (matrix @ fields.T) / area
 
 
-def moduli(stiffness):
+def moduli(stiffness: np.ndarray) -> tuple[float, ...]:
     """Numbers named by MODULI of a sheet with a stiffness (3, 3) [N/m]."""
     s = YOUNG * THICKNESS * np.linalg.inv(stiffness)
     return (
@@ -208,7 +220,7 @@ def moduli(stiffness):
 # --- single triangles ---
 
 
-def energy_error(corners, poisson):
+def energy_error(corners: np.ndarray, poisson: float) -> float:
     """Largest error [-] of the energy of a triangle's springs in stress along each side."""
     sides, stiffness, area = springs(corners, np.array([[0, 1, 2]]), poisson)
     span = corners[sides[:, 1]] - corners[sides[:, 0]]
@@ -224,7 +236,7 @@ def energy_error(corners, poisson):
     return max(errors)
 
 
-def worst_energy_error(count=50):
+def worst_energy_error(count: int = 50) -> float:
     """Worst energy_error over `count` random triangles for each of POISSONS."""
     rng = np.random.default_rng(11)
     errors = []
@@ -240,7 +252,7 @@ def worst_energy_error(count=50):
 # --- the petal under load ---
 
 
-def petal_load(nodes, outer):
+def petal_load(nodes: np.ndarray, outer: np.ndarray) -> np.ndarray:
     """Forces (N, 2) [N] of LOAD along +x, even on the outer edge (nodes in order)."""
     length = np.linalg.norm(np.diff(nodes[outer], axis=0), axis=1)
     force = np.zeros((len(nodes), 2))
@@ -250,7 +262,9 @@ def petal_load(nodes, outer):
     return force
 
 
-def petal_answers(matrix, nodes, inner, outer):
+def petal_answers(
+    matrix: sparse.csr_matrix, nodes: np.ndarray, inner: np.ndarray, outer: np.ndarray
+) -> tuple[float, float]:
     """Mean displacement [m] of the outer edge under LOAD, and reaction [N] to PULL.
 
     The first is the load's work over the load, so twice the energy over the load. In the second the
@@ -266,7 +280,14 @@ def petal_answers(matrix, nodes, inner, outer):
     return moved @ load / LOAD, (matrix @ pulled)[2 * outer].sum()
 
 
-def calculix_deck(nodes, elements, inner, edge, poisson, act):
+def calculix_deck(
+    nodes: np.ndarray,
+    elements: np.ndarray,
+    inner: np.ndarray,
+    edge: np.ndarray,
+    poisson: float,
+    act: Iterable[str],
+) -> str:
     """Input of CalculiX: plane-stress elements (E, 3 or 6), `inner` fixed; lines `act` load it."""
     numbered = np.column_stack([np.arange(len(elements)), elements]) + 1
     lines = [
@@ -298,7 +319,7 @@ def calculix_deck(nodes, elements, inner, edge, poisson, act):
     return "\n".join(lines)
 
 
-def run_calculix(deck, count):
+def run_calculix(deck: str, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Displacements (count, 2) [m] and total reaction (2,) [N] that CalculiX prints for a deck."""
     with tempfile.TemporaryDirectory(prefix="calculix-") as folder:
         Path(folder, "petal.inp").write_text(deck, encoding="utf-8")
@@ -314,7 +335,14 @@ def run_calculix(deck, count):
     return np.array(numbers[:-1])[:, 1:3], np.array(numbers[-1][:2])
 
 
-def calculix_answers(nodes, triangles, inner, outer, order, poisson=POISSON):
+def calculix_answers(
+    nodes: np.ndarray,
+    triangles: np.ndarray,
+    inner: np.ndarray,
+    outer: np.ndarray,
+    order: int,
+    poisson: float = POISSON,
+) -> tuple[float, float]:
     """What petal_answers gives, by CalculiX with elements of first or second `order`."""
     if order == 2:
         sides, sides_of, _ = geometry.unique_sides(triangles)
@@ -392,7 +420,7 @@ LATTICES = {
 }
 
 
-def triangle_checks():
+def triangle_checks() -> list[Check]:
     """Single triangles, and sheets of equal ones against closed forms."""
     energy = "sigma2 h S / (2 E) in uniaxial stress along each side, which defines (5)"
     found = [at_most("triangles: error of energy", worst_energy_error(), 1e-12, energy)]
@@ -414,7 +442,7 @@ def triangle_checks():
     return [*found, Check(title, worst, 1 / 3, EXACT, source)]
 
 
-def sheet_checks(refines):
+def sheet_checks(refines: Sequence[int]) -> list[Check]:
     """Moduli of sheets and petals, recorded."""
     sheets = {name: sheet() for name, sheet in SHEETS.items()}
     sheets.update({f"petal, refine {n}": petal(n)[:2] for n in refines})
@@ -427,7 +455,7 @@ def sheet_checks(refines):
     return found
 
 
-def petal_checks(refines, calculix):
+def petal_checks(refines: Sequence[int], calculix: bool) -> list[Check]:
     """Displacement and reaction of the petal over those by finite elements, recorded."""
     found = []
     for n in refines:
@@ -446,7 +474,7 @@ def petal_checks(refines, calculix):
     return found
 
 
-def calculix_checks():
+def calculix_checks() -> list[Check]:
     """CalculiX against our own triangles, where the two must agree.
 
     CalculiX gives plane-stress elements a thickness strain that is continuous from one to the next;
@@ -463,7 +491,7 @@ def calculix_checks():
     return found
 
 
-def checks(full):
+def checks(full: bool) -> list[Check]:
     """Checks of sheets and of the petal; `full`, finer petals too, and CalculiX where it is."""
     refines = REFINES if full else FAST_REFINES
     calculix = full and shutil.which("ccx") is not None

@@ -8,10 +8,12 @@ once. Displacements are projected on each shape, and a sinusoid is fitted to eac
 """
 
 import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from membrane import geometry, scene
+from numpy.typing import ArrayLike
 from yade import wrapper as yade
 
 from . import Check, at_most, recorded
@@ -39,6 +41,7 @@ DISK_STRAIN = 1e-4
 DISK_POISSON = 0.34
 DISK_DENSITY = 1420.0  # [kg/m3]
 DISK_THICKNESS = 1e-3  # [m]; no side buckles, see SpunDisk.compressed
+DISK_SCALE = DISK_DENSITY * OMEGA**2  # rho Omega2 a2 [Pa]
 DISK_CELLS = (8, 16, 32)  # from the centre to the edge
 SHEARED_CELLS = 16
 DISK_BANDS = 8  # rings over which stresses are averaged
@@ -51,7 +54,7 @@ LATTICE_POISSON = 1 / 3
 # --- closed forms ---
 
 
-def legendre(degree, x):
+def legendre(degree: float | np.ndarray, x: float | np.ndarray) -> np.ndarray:
     """Legendre function P of real degree at x in (0, 1], or of arrays of both: series about 1."""
     term = total = np.ones(np.broadcast(degree, x).shape)
     for k in range(2000):
@@ -60,7 +63,7 @@ def legendre(degree, x):
     return total
 
 
-def string_flap(mode, hub):
+def string_flap(mode: int, hub: float) -> float:
     """Frequency omega/Omega of a string's mode 1, 2, … out of the plane.
 
     With x from 0 on the axis to 1 at the tip the shape w obeys
@@ -88,14 +91,14 @@ def string_flap(mode, hub):
     return float(np.sqrt(0.5 * middle * (middle + 1)))
 
 
-def disk_stress(r, poisson):
+def disk_stress(r: float | np.ndarray, poisson: float) -> np.ndarray:
     """Radial and hoop stress (..., 2) of a free spinning disk over rho Omega2 a2, at r over a."""
     radial = (3 + poisson) * (1 - r**2)
     hoop = (3 + poisson) - (1 + 3 * poisson) * r**2
     return np.stack([radial, hoop], axis=-1) / 8
 
 
-def disk_frequency(diameters, circles, poisson):
+def disk_frequency(diameters: int, circles: int, poisson: float) -> float:
     """Frequency omega/Omega of a free spinning membrane disk (Lamb and Southwell 1921)."""
     n = diameters + 2 * circles
     return float(np.sqrt((n * (n + 2) * (3 + poisson) - diameters**2 * (1 + 3 * poisson)) / 8))
@@ -104,13 +107,13 @@ def disk_frequency(diameters, circles, poisson):
 # --- running and measuring ---
 
 
-def turn(angle):
+def turn(angle: float) -> np.ndarray:
     """Matrix (3, 3) that turns about z by `angle` [rad]."""
     c, s = np.cos(angle), np.sin(angle)
     return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
 
 
-def imbalance(sail):
+def imbalance(sail: scene.MembraneScene) -> float:
     """Largest force on a free node in the turning frame over the largest centrifugal force [-].
 
     Both are those of the engines, in one step in which nothing moves.
@@ -126,7 +129,13 @@ def imbalance(sail):
     return float(np.abs(forces[free]).max() / outward.max())
 
 
-def spin(sail, positions, kick, turns, step=STEP):
+def spin(
+    sail: scene.MembraneScene,
+    positions: np.ndarray,
+    kick: np.ndarray,
+    turns: float,
+    step: float = STEP,
+) -> tuple[np.ndarray, np.ndarray, float]:
     """Release the membrane in its rotating equilibrium, with a kick, and watch it.
 
     Parameters
@@ -136,9 +145,8 @@ def spin(sail, positions, kick, turns, step=STEP):
         Equilibrium [m].
     kick : (N, 3) float
         Velocity [m/s] at the start relative to the turning frame.
-    turns : float
-    step : float
-        O.dt over the critical time step, at most.
+    turns, step : float
+        `step`: O.dt over the critical time step, at most.
 
     Returns
     -------
@@ -167,7 +175,7 @@ def spin(sail, positions, kick, turns, step=STEP):
     return interval * np.arange(len(moved)), np.array(moved), step_time
 
 
-def fit_frequency2(times, values):
+def fit_frequency2(times: np.ndarray, values: np.ndarray) -> float:
     """Square of the frequency [rad2/s2] of a sinusoid (S,) sampled at even `times` (S,) [s].
 
     First from q(k+1) + q(k-1) = 2 cos(omega tau) q(k), which needs no guess and says 0 of a
@@ -188,14 +196,16 @@ def fit_frequency2(times, values):
     return frequency**2
 
 
-def frequencies2(times, moved, shapes, masses):
+def frequencies2(
+    times: np.ndarray, moved: np.ndarray, shapes: np.ndarray, masses: np.ndarray
+) -> np.ndarray:
     """(omega/Omega)2 (M,) of each of `shapes` (N, M), from displacements (S, N) of the nodes."""
     weighted = masses[:, None] * shapes
     parts = moved @ weighted @ np.linalg.inv(shapes.T @ weighted)
     return np.array([fit_frequency2(times, part) for part in parts.T]) / OMEGA**2
 
 
-def order(values):
+def order(values: Sequence[float] | np.ndarray) -> float:
     """Order of convergence from the last three of `values` on meshes refined twofold."""
     return float(np.log2((values[-3] - values[-2]) / (values[-2] - values[-1])))
 
@@ -223,13 +233,15 @@ class SpunString:
     imbalance: float
 
 
-def string_tension(r, hub, density, tip_mass):
+def string_tension(
+    r: np.ndarray | float, hub: float, density: float, tip_mass: float
+) -> np.ndarray | float:
     """Tension [N] of a string of length 1 m at distances `r` [m] from the axis."""
     tip = 1 + hub
     return OMEGA**2 * (0.5 * density * (tip**2 - r**2) + tip_mass * tip)
 
 
-def stretched_chain(chain, hub):
+def stretched_chain(chain: scene.Membrane, hub: float) -> np.ndarray:
     """Distances (K+1,) [m] of a spinning chain's nodes from the axis; the first is held at `hub`.
 
     The forces k (r[i] - r[i-1] - L0) are linear in the distances: one solve gives them.
@@ -244,7 +256,9 @@ def stretched_chain(chain, hub):
     return np.concatenate([[hub], np.linalg.solve(matrix, pull)])
 
 
-def lateral_modes(tension, length, masses, count):
+def lateral_modes(
+    tension: np.ndarray, length: np.ndarray, masses: np.ndarray, count: int
+) -> np.ndarray:
     """Lowest shapes (K+1, count) of a taut chain held at its first node, each at most 1."""
     ahead = np.eye(len(length)) - np.eye(len(length), k=-1)
     root = np.sqrt(masses[1:])
@@ -253,36 +267,10 @@ def lateral_modes(tension, length, masses, count):
     return np.vstack([np.zeros(count), shapes / np.abs(shapes).max(axis=0)])
 
 
-def spin_string(
-    segments,
-    hub,
-    *,
-    modes=len(STRING_MODES),
-    turns=3.0,
-    strain=STRING_STRAIN,
-    density=STRING_DENSITY,
-    tip_mass=0.0,
-):
-    """Spin a chain of cables of length 1 m, held at a hub, and measure its lowest modes.
-
-    Parameters
-    ----------
-    segments : int
-    hub : float
-        Radius of the hub [m].
-    modes : int
-    turns : float
-    strain : float
-        At the root.
-    density : float
-        [kg/m]
-    tip_mass : float
-        [kg]
-
-    Returns
-    -------
-    SpunString
-    """
+def taut_string(
+    segments: int, hub: float, strain: float, density: float, tip_mass: float
+) -> tuple[scene.MembraneScene, np.ndarray]:
+    """A string of `spin_string` in the scene, and its rotating equilibrium (K+1, 3) [m]."""
     yade.Omega().reset()
     nodes = np.zeros((segments + 1, 3))
     nodes[:, 0] = hub + np.linspace(0, 1, segments + 1)
@@ -298,9 +286,37 @@ def spin_string(
     sail.hold([0])
     nodes[:, 0] = stretched_chain(chain, hub)
     sail.place(nodes)
-    unbalanced = imbalance(sail)
+    return sail, nodes
 
-    masses = sail.masses()
+
+def spin_string(
+    segments: int,
+    hub: float,
+    *,
+    modes: int = len(STRING_MODES),
+    turns: float = 3.0,
+    strain: float = STRING_STRAIN,
+    density: float = STRING_DENSITY,
+    tip_mass: float = 0.0,
+) -> SpunString:
+    """Spin a chain of cables of length 1 m, held at a hub, and measure its lowest modes.
+
+    Parameters
+    ----------
+    segments : int
+    hub : float
+        Radius of the hub [m].
+    modes : int
+    turns : float
+    strain : float
+        At the root.
+    density : float
+        [kg/m]
+    tip_mass : float
+        [kg]
+    """
+    sail, nodes = taut_string(segments, hub, strain, density, tip_mass)
+    unbalanced, chain, masses = imbalance(sail), sail.membrane, sail.masses()
     shapes = lateral_modes(np.array(chain.tensions()), np.array(chain.lengths()), masses, modes)
     kick = np.outer(AMPLITUDE * OMEGA * shapes.sum(axis=1), [0, 1, 1])
     times, moved, _ = spin(sail, nodes, kick, turns)
@@ -315,7 +331,7 @@ def spin_string(
     return SpunString(flap, in_plane, float(error), unbalanced)
 
 
-def spin_tether(hub):
+def spin_tether(hub: float) -> SpunString:
     """Spin a light tether with a mass at its tip, held at a hub of radius `hub` [m]."""
     return spin_string(
         TETHER_SEGMENTS,
@@ -371,7 +387,7 @@ class SpunDisk:
     step_time: float
 
 
-def spinning_net(nodes, net):
+def spinning_net(nodes: np.ndarray, net: scene.Membrane) -> np.ndarray:
     """Positions (N, 3) [m] of a flat membrane that spins about z, by Newton's method.
 
     Each step solves for displacements by conjugate gradients. Rigid motions have no part in them:
@@ -412,7 +428,9 @@ def spinning_net(nodes, net):
     raise RuntimeError("the equilibrium of the spinning net was not found in 20 Newton steps")
 
 
-def conjugate_gradients(matrix, right, tolerance=1e-6):
+def conjugate_gradients(
+    matrix: Callable[[np.ndarray], np.ndarray], right: np.ndarray, tolerance: float = 1e-6
+) -> np.ndarray:
     """Solve matrix(x) = right for a symmetric `matrix` that is positive for all x reached."""
     x, residual = np.zeros_like(right), right
     search, norm = residual, np.sum(residual**2)
@@ -427,89 +445,72 @@ def conjugate_gradients(matrix, right, tolerance=1e-6):
     return x
 
 
-def disk_shapes(nodes, masses):
+def disk_shapes(nodes: np.ndarray, masses: np.ndarray) -> tuple[list[str], np.ndarray]:
     """Closed-form shapes of DISK_MODES with mean 0: names (M), cosine and sine shapes (N, M)."""
     r, angle = np.hypot(nodes[:, 0], nodes[:, 1]), np.arctan2(nodes[:, 1], nodes[:, 0])
-    names, shapes = [], []
+    names, columns = [], []
     for name, (diameters, circles) in DISK_MODES.items():
         radial = r**diameters if circles == 0 else 1 - 2 * r**2
-        for wave in (np.cos, np.sin) if diameters else (np.cos,):
+        for wave in (np.cos, np.sin)[: 2 if diameters else 1]:
             names.append(name)
-            shapes.append(radial * wave(diameters * angle))
-    shapes = np.array(shapes).T
+            columns.append(radial * wave(diameters * angle))
+    shapes = np.array(columns).T
     return names, shapes - masses @ shapes / masses.sum()
 
 
-def polar_stress(stress, places):
+def polar_stress(stress: np.ndarray, places: np.ndarray) -> np.ndarray:
     """Radial and hoop stress (T, 2) of stresses (T, 2, 2) at places (T, 2)."""
     out = places / np.linalg.norm(places, axis=1)[:, None]
     around = out[:, ::-1] * [-1, 1]
     return np.stack([np.einsum("ti,tij,tj->t", d, stress, d) for d in (out, around)], axis=1)
 
 
-def band_means(errors, r, areas):
+def band_means(errors: np.ndarray, r: np.ndarray, areas: np.ndarray) -> np.ndarray:
     """Means (2, DISK_BANDS), by area, of `errors` (T, 2) at radii r over rings of equal width."""
     band = np.minimum((r * DISK_BANDS).astype(int), DISK_BANDS - 1)
     weights = np.bincount(band, areas, DISK_BANDS)
     return np.array([np.bincount(band, areas * e, DISK_BANDS) / weights for e in errors.T])
 
 
-def spin_disk(cells, *, even=True, poisson=DISK_POISSON, turns=1.5, path="law2", step=STEP):
+def spin_disk(
+    cells: int,
+    *,
+    even: bool = True,
+    poisson: float = DISK_POISSON,
+    turns: float = 1.5,
+    path: str = "law2",
+    step: float = STEP,
+) -> SpunDisk:
     """Spin a free disk of film of radius 1 m and measure its stress and lowest modes.
 
     Parameters
     ----------
-    cells : int
-        From the centre to the edge.
-    even : bool
-        Mesh of nearly equilateral triangles, or rings of 6 k nodes; see `disk_mesh`.
+    cells, even
+        Of `disk_mesh`.
     poisson : float
         Of the film.
-    turns : float
     path : str
         Of SceneParameters.
-    step : float
-        O.dt over the critical time step, at most.
-
-    Returns
-    -------
-    SpunDisk
+    turns, step
+        Of `spin`.
     """
     yade.Omega().reset()
-    scale = DISK_DENSITY * OMEGA**2  # rho Omega2 a2 [Pa]
-    centre = scale * disk_stress(0.0, poisson)[0]
-    young = (1 - poisson) * centre / DISK_STRAIN
     nodes, triangles = disk_mesh(cells, even)
-    film = scene.film(young, poisson, DISK_DENSITY, DISK_THICKNESS)
-    net = scene.add_membrane(nodes, triangles, material=film)
+    centre = DISK_SCALE * disk_stress(0.0, poisson)[0]
+    film = (1 - poisson) * centre / DISK_STRAIN, poisson, DISK_DENSITY, DISK_THICKNESS
+    net = scene.add_membrane(nodes, triangles, material=scene.film(*film))
     sail = scene.set_engines(net, scene.SceneParameters(path=path))
     spun = spinning_net(nodes, net)
     sail.place(spun)
     unbalanced = imbalance(sail)
-
-    shares = side_stiffness(nodes, triangles, young, poisson, DISK_THICKNESS)
+    shares = side_stiffness(nodes, triangles, *film[:2], DISK_THICKNESS)
     stress = triangle_stress(spun, triangles, shares, nodes, DISK_THICKNESS)
-    areas = geometry.triangle_areas(spun, triangles)
-    middle = spun[triangles].mean(axis=1)[:, :2]
-    r = np.linalg.norm(middle, axis=1)
-    polar = polar_stress(stress, middle)
-    film_error, lattice_error = (
-        (polar - scale * disk_stress(r, ratio)) / centre for ratio in (poisson, LATTICE_POISSON)
-    )
-
-    masses = sail.masses()
-    names, shapes = disk_shapes(spun, masses)
-    kick = np.outer(AMPLITUDE * OMEGA * shapes.sum(axis=1), [0, 0, 1])
-    times, moved, step_time = spin(sail, spun, kick, turns, step)
-    frequency = np.sqrt(frequencies2(times, moved[:, :, 2], shapes, masses))
-    by_name = {n: frequency[[m == n for m in names]] for n in DISK_MODES}
+    frequency, moved, step_time = disk_swings(sail, spun, turns, step)
     lengths = np.array([net.lengths((spun + shift).tolist()) for shift in moved[::5]])
     return SpunDisk(
-        frequency={name: float(f.mean()) for name, f in by_name.items()},
-        split=float(max(np.ptp(f) / f.mean() for f in by_name.values())),
-        film_error=band_means(film_error, r, areas),
-        lattice_error=band_means(lattice_error, r, areas),
-        spread=float(np.sqrt(np.average(lattice_error**2, axis=0, weights=areas)).max()),
+        frequency={name: float(f.mean()) for name, f in frequency.items()},
+        split=float(max(np.ptp(f) / f.mean() for f in frequency.values())),
+        **stress_errors(spun, triangles, stress, poisson),
         compression=float(max(0.0, -np.linalg.eigvalsh(stress).min()) / centre),
         compressed=float(np.mean(lengths[0] < np.array(net.restLengths))),
         buckled=int(np.sum(lengths.min(axis=0) < np.array(net.criticalLengths))),
@@ -517,6 +518,40 @@ def spin_disk(cells, *, even=True, poisson=DISK_POISSON, turns=1.5, path="law2",
         dt=yade.Omega().dt,
         step_time=step_time,
     )
+
+
+def disk_swings(
+    sail: scene.MembraneScene, spun: np.ndarray, turns: float, step: float
+) -> tuple[dict[str, np.ndarray], np.ndarray, float]:
+    """Frequencies omega/Omega of a spinning disk's cosine and sine by name of mode.
+
+    Beside them what `spin` returns: displacements [m] and processor time of a step [s].
+    """
+    masses = sail.masses()
+    names, shapes = disk_shapes(spun, masses)
+    kick = np.outer(AMPLITUDE * OMEGA * shapes.sum(axis=1), [0, 0, 1])
+    times, moved, step_time = spin(sail, spun, kick, turns, step)
+    frequency = np.sqrt(frequencies2(times, moved[:, :, 2], shapes, masses))
+    return {n: frequency[[m == n for m in names]] for n in DISK_MODES}, moved, step_time
+
+
+def stress_errors(
+    spun: np.ndarray, triangles: np.ndarray, stress: np.ndarray, poisson: float
+) -> dict:
+    """The errors of SpunDisk that are of the stress (T, 2, 2) [Pa] of a disk at `spun` (N, 3)."""
+    areas = geometry.triangle_areas(spun, triangles)
+    middle = spun[triangles].mean(axis=1)[:, :2]
+    r = np.linalg.norm(middle, axis=1)
+    polar, centre = polar_stress(stress, middle), DISK_SCALE * disk_stress(0.0, poisson)[0]
+    film, lattice = (
+        (polar - DISK_SCALE * disk_stress(r, ratio)) / centre
+        for ratio in (poisson, LATTICE_POISSON)
+    )
+    return {
+        "film_error": band_means(film, r, areas),
+        "lattice_error": band_means(lattice, r, areas),
+        "spread": float(np.sqrt(np.average(lattice**2, axis=0, weights=areas)).max()),
+    }
 
 
 # --- checks ---
@@ -542,18 +577,18 @@ ORDER = 0.15
 DISK_ORDER_MODES = ("(2,0)", "(0,1)", "(3,0)")  # (1,0), the tilted disk, is exact on every mesh
 
 
-def relative(name, value, target, share, source):
+def relative(name: str, value: float, target: float, share: float, source: str) -> Check:
     """A Check of `value` against `target` within `share` of it."""
     return Check(name, float(value), float(target), share * float(target), source)
 
 
-def worst_order(values):
+def worst_order(values: ArrayLike) -> float:
     """Of the orders of convergence of (S, M) `values` on S meshes the one farthest from 2."""
     orders = [order(column) for column in np.transpose(values)]
     return max(orders, key=lambda p: abs(p - 2))
 
 
-def tether_checks():
+def tether_checks() -> list[Check]:
     """Frequencies of a light tether with a tip mass on a hub."""
     hub = HUBS[1]
     spun = spin_tether(hub)
@@ -565,7 +600,9 @@ def tether_checks():
     ]
 
 
-def string_checks(spun, segments, hub, tolerances):
+def string_checks(
+    spun: SpunString, segments: int, hub: float, tolerances: Sequence[float]
+) -> list[Check]:
     """Tension and frequencies of a string (SpunString); `tolerances` (M,) of the modes [-]."""
     name = f"string, {segments} segments, hub {hub:g} L"
     checks = [
@@ -586,7 +623,7 @@ def string_checks(spun, segments, hub, tolerances):
     return checks
 
 
-def disk_checks(spun, cells, tolerance):
+def disk_checks(spun: SpunDisk, cells: int, tolerance: float) -> list[Check]:
     """Stress and frequencies of a disk (SpunDisk); `tolerance` of the frequencies [-]."""
     name = f"disk, {cells} cells"
     radial, hoop = np.abs(spun.film_error).max(axis=1).tolist()
@@ -608,7 +645,7 @@ def disk_checks(spun, cells, tolerance):
     return checks
 
 
-def disk_convergence(spun, meshes):
+def disk_convergence(spun: Sequence[SpunDisk], meshes: Sequence[int]) -> list[Check]:
     """Orders of convergence of disks on three meshes or more, and where they converge to."""
     values = [[s.frequency[mode] for mode in DISK_ORDER_MODES] for s in spun]
     limits = [disk_frequency(*DISK_MODES[mode], LATTICE_POISSON) for mode in DISK_ORDER_MODES]
@@ -629,7 +666,7 @@ def disk_convergence(spun, meshes):
     ]
 
 
-def disk_limits(finest, cells):
+def disk_limits(finest: SpunDisk, cells: int) -> list[Check]:
     """How wrong disks are that the model does not fit; not errors of the plugin."""
     sheared = spin_disk(SHEARED_CELLS, even=False)
     soft = spin_disk(DISK_CELLS[0], poisson=0.0)
@@ -658,7 +695,7 @@ def disk_limits(finest, cells):
     ]
 
 
-def checks(full):
+def checks(full: bool) -> list[Check]:
     """Checks of spinning bodies: coarse meshes in seconds; `full`, fine ones and the orders."""
     found = tether_checks()
     for hub in HUBS:
@@ -671,10 +708,10 @@ def checks(full):
             name = f"string, hub {hub:g} L: order of convergence farthest from 2"
             found.append(Check(name, worst_order(values), 2, ORDER, LINEAR))
 
-    meshes = DISK_CELLS if full else DISK_CELLS[:1]
-    spun = [spin_disk(cells) for cells in meshes]
-    found += disk_checks(spun[-1], meshes[-1], FINE_DISK if full else COARSE_DISK)
+    cells = DISK_CELLS if full else DISK_CELLS[:1]
+    disks = [spin_disk(number) for number in cells]
+    found += disk_checks(disks[-1], cells[-1], FINE_DISK if full else COARSE_DISK)
     if full:
-        found += disk_convergence(spun, meshes)
-        found += disk_limits(spun[-1], meshes[-1])
+        found += disk_convergence(disks, cells)
+        found += disk_limits(disks[-1], cells[-1])
     return found

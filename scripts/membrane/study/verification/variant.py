@@ -4,8 +4,10 @@
 import time
 from dataclasses import dataclass, field, replace
 
+import numpy as np
 from membrane import scene
 from membrane.parameters import SailParameters
+from membrane.run.kind import Sail
 from yade import wrapper as yade
 
 from . import deployment
@@ -35,22 +37,22 @@ class Variant:
     ledger: bool = True
     contact: bool = True
 
-    def parameters(self):
+    def parameters(self) -> SailParameters:
         """Its SailParameters."""
         return replace(SailParameters(duration=self.duration), **self.changes)
 
-    def start(self):
+    def start(self) -> np.ndarray:
         """Positions (N, 3) [m] at the release; the fused path finds them for both."""
         p = self.parameters()
         rested = p if self.rests else SailParameters(refine=p.refine)
         return deployment.equilibrium(replace(rested, path="fused"))
 
-    def begin(self, positions=None):
+    def begin(self, positions: np.ndarray | None = None) -> tuple[Sail, scene.MembraneScene]:
         """Release the sail from `positions` (N, 3) [m], by default its `start`.
 
         Returns
         -------
-        mesh : SailMesh
+        sail : Sail
         sail : MembraneScene
         """
         start = self.start() if positions is None else positions
@@ -59,7 +61,7 @@ class Variant:
             drop_collider()
         return built
 
-    def step_time(self, steps):
+    def step_time(self, steps: int) -> float:
         """Processor time of a step [s], soon after the release, on one thread."""
         self.begin()
         scene.advance(steps // 10)
@@ -68,7 +70,7 @@ class Variant:
         return (time.process_time() - begun) / steps
 
 
-def drop_collider():
+def drop_collider() -> None:
     """Take the collider out of the engines: nothing touches the spool any more."""
     omega = yade.Omega()
     collider = yade.InsertionSortCollider

@@ -3,6 +3,7 @@
 
 #include <iostream>
 #include <sstream>
+#include <type_traits>
 
 // YADE logs through objects named `logger`, one per class. Here the name must be in scope, as it must there, but
 // messages of level WARN and above go straight to the standard error stream, and the rest is dropped (YADE's default).
@@ -16,7 +17,8 @@ struct Logger {};
 #define DECLARE_LOGGER                                                                                                 \
 public:                                                                                                                \
     static constexpr ::yade::abi::Logger logger {}
-#define CREATE_LOGGER(Class) static_assert(sizeof(Class::logger) > 0, #Class " needs DECLARE_LOGGER")
+#define CREATE_LOGGER(Class)                                                                                           \
+    static_assert(std::is_same_v<decltype(Class::logger), const ::yade::abi::Logger>, #Class " needs DECLARE_LOGGER")
 #define CREATE_CPP_LOCAL_LOGGER(name)                                                                                  \
     namespace {                                                                                                        \
     [[maybe_unused]] constexpr ::yade::abi::Logger logger{};                                                           \
@@ -25,7 +27,7 @@ public:                                                                         
 // One write per message, since functors log from several threads.
 #define YADE_ABI_LOG(wanted, level, message)                                                                           \
     {                                                                                                                  \
-        static_assert(sizeof(logger) > 0, "");                                                                         \
+        static_assert(std::is_same_v<decltype(logger), const ::yade::abi::Logger>);                                    \
         if (wanted) {                                                                                                  \
             std::ostringstream text_;                                                                                  \
             text_ << level " " __FILE__ ":" << __LINE__ << " " << __func__ << ": " << message << "\n";                 \
