@@ -43,34 +43,61 @@ Vector3r freeDirections(const State& state) {
 
 } // namespace
 
+/// What a step has and does.
+struct MembraneLedger::Tally {
+    vector<Real> arriving, mean; ///< powers by WorkEntry [W], at the velocities before this step and at their mean
+    Real kinetic = 0., potential = 0., momentum = 0.;
+    bool all = false; ///< energies and arriving powers are known
+
+    Tally(const ::membrane::MotionSums& moved, std::size_t entries, bool all)
+        : arriving(entries, 0.), mean(entries, 0.), kinetic(moved.kinetic), potential(moved.potential),
+          momentum(moved.angularMomentum), all(all) {
+        mean[impulseEntry] = moved.torque;
+    }
+};
+
 void MembraneLedger::action() {
     StepGuard::refuseCall(*this);
+    const FreeHub* const hub = hubOfThisStep();
+    const ::membrane::Sweep& sweep = forces->sweep();
+    if (started && !lastLengths.empty() && lastLengths.size() != sweep.memorySize())
+        throw std::runtime_error("MembraneLedger: forces has another membrane now");
+    std::size_t entry[::membrane::maxChannels];
+    for (std::size_t channel = 0; channel < sweep.channels().size(); ++channel)
+        entry[channel] = entryOf(sweep, static_cast<int>(channel));
+    Tally tally(sweep.motionSums(), furtherEntries + furtherNames.size(),
+                forces->madeSums() == ::membrane::Sums::energies);
+    countNodes(tally, hub, entry);
+    if (hub) countHub(tally, *hub);
+    tally.arriving[impulseEntry] = tally.mean[impulseEntry]; // this step's torque all along
+    bookContacts();
+    bookWorks(tally);
+    if (tally.all) bringUpToDate(tally);
+}
+
+/// The free hub, if any; the engines that this one looks at must have run.
+const FreeHub* MembraneLedger::hubOfThisStep() const {
     if (!forces || !forces->membrane) throw std::runtime_error("MembraneLedger: forces is not set, or has no membrane");
     if (!forces->hasRun(*scene) || forces->madeSums() == ::membrane::Sums::none)
         throw std::runtime_error("MembraneLedger: its MembraneForceEngine must run in the same step, before it");
     const FreeHub* const hub = forces->hub(*scene);
     if (hub && !hub->hasRun(*scene))
         throw std::runtime_error("MembraneLedger: FreeHub must run in the same step, before it");
-    const ::membrane::Sweep& sweep = forces->sweep();
-    if (started && !lastLengths.empty() && lastLengths.size() != sweep.memorySize())
-        throw std::runtime_error("MembraneLedger: forces has another membrane now");
-    const bool all = forces->madeSums() == ::membrane::Sums::energies;
+    return hub;
+}
 
-    // Power at the velocities before this step, and at their mean.
+/// Adds what the sweep has summed, and the nodes that it has left out.
+void MembraneLedger::countNodes(Tally& tally, const FreeHub* hub, const std::size_t* entry) const {
+    const ::membrane::Sweep& sweep = forces->sweep();
     const ::membrane::MotionSums& moved = sweep.motionSums();
     const int channels = static_cast<int>(sweep.channels().size());
-    std::size_t entry[::membrane::maxChannels];
-    for (int channel = 0; channel < channels; ++channel) entry[channel] = entryOf(sweep, channel);
-    const auto [arrivingOutside, leavingOutside] = forces->powerFromOutside();
-    vector<Real> arriving(furtherEntries + furtherNames.size(), 0.), mean = arriving;
     for (int channel = 0; channel < channels; ++channel) {
-        arriving[entry[channel]] = moved.arriving[channel];
-        mean[entry[channel]] = moved.power[channel];
+        tally.arriving[entry[channel]] = moved.arriving[channel];
+        tally.mean[entry[channel]] = moved.power[channel];
     }
-    arriving[otherEntry] = arrivingOutside;
-    mean[otherEntry] = 0.5 * (arrivingOutside + leavingOutside);
-    mean[impulseEntry] = moved.torque;
-    Real kineticNow = moved.kinetic, potentialNow = moved.potential, momentumNow = moved.angularMomentum;
+    const auto [arrivingOutside, leavingOutside] = forces->powerFromOutside();
+    tally.arriving[otherEntry] = arrivingOutside;
+    tally.mean[otherEntry] = 0.5 * (arrivingOutside + leavingOutside);
     const auto& states = forces->states();
     for (const int i : forces->nodesLeft()) {
         const State& state = *states[i];
@@ -92,32 +119,34 @@ void MembraneLedger::action() {
             powers[otherEntry] += other.cwiseProduct(Vector3r::Ones() - held).dot(v);
         };
         const Vector3r between = 0.5 * (before + after);
-        addPowers(mean, between);
-        if (all) addPowers(arriving, before);
-        kineticNow += 0.5 * state.mass * before.cwiseProduct(free).dot(after);
-        potentialNow -= state.mass * gravity.cwiseProduct(free).dot(x);
+        addPowers(tally.mean, between);
+        if (tally.all) addPowers(tally.arriving, before);
+        tally.kinetic += 0.5 * state.mass * before.cwiseProduct(free).dot(after);
+        tally.potential -= state.mass * gravity.cwiseProduct(free).dot(x);
         const Vector3r momentum = state.mass * between.cwiseProduct(free);
-        momentumNow += x[0] * momentum[1] - x[1] * momentum[0];
+        tally.momentum += x[0] * momentum[1] - x[1] * momentum[0];
         // The integrator keeps gravity out of the scene's forces.
         const Vector3r pull = (total + state.mass * gravity).cwiseProduct(free);
-        mean[impulseEntry] += x[0] * pull[1] - x[1] * pull[0];
+        tally.mean[impulseEntry] += x[0] * pull[1] - x[1] * pull[0];
     }
-    if (hub) {
-        kineticNow += hub->kinetic();
-        momentumNow += hub->angularMomentum();
-        mean[impulseEntry] += hub->torque;
-        mean[otherEntry] += hub->contactTorque * 0.5 * (hub->spinBefore + hub->spin);
-        arriving[otherEntry] += hub->contactTorque * hub->spinBefore;
-    }
-    arriving[impulseEntry] = mean[impulseEntry]; // the impulse's torque is that of this step all along
+}
 
-    // Work from the step before to this one is the mean of both forces times the velocity between them: half a step
-    // with this step's forces before it, and half a step after it.
-    bookContacts();
+void MembraneLedger::countHub(Tally& tally, const FreeHub& hub) {
+    tally.kinetic += hub.kinetic();
+    tally.momentum += hub.angularMomentum();
+    tally.mean[impulseEntry] += hub.torque;
+    tally.mean[otherEntry] += hub.contactTorque * 0.5 * (hub.spinBefore + hub.spin);
+    tally.arriving[otherEntry] += hub.contactTorque * hub.spinBefore;
+}
+
+/// Work from the step before to this one is the mean of both forces times the velocity between them: half a step with
+/// this step's forces before it, and half a step after it.
+void MembraneLedger::bookWorks(const Tally& tally) {
+    const vector<Real>&arriving = tally.arriving, &mean = tally.mean;
     doneWorks.resize(mean.size());
     if (started) {
-        doneKinks += sweep.elementEnergies().kink;
-        if (all) {
+        doneKinks += forces->sweep().elementEnergies().kink;
+        if (tally.all) {
             vector<Real*> entries{&creaseWork, &dampingWork, &dragWork, &drivenWork, &contactWork, &angularImpulse};
             furtherWorks.resize(furtherNames.size());
             for (Real& work : furtherWorks) entries.push_back(&work);
@@ -136,15 +165,16 @@ void MembraneLedger::action() {
     Real moving = 0.;
     for (const std::size_t k : {creaseEntry, dampingEntry, dragEntry, otherEntry}) moving += std::abs(mean[k]);
     restless = !(scene->dt * moving <= restlessShare * (std::abs(kinetic) + elastic));
-    if (!all) return;
+}
 
+void MembraneLedger::bringUpToDate(const Tally& tally) {
     upToDate_ = scene->iter;
     time = scene->time;
-    elastic = sweep.elementEnergies().elastic;
+    elastic = forces->sweep().elementEnergies().elastic;
     kinkError = doneKinks;
-    kinetic = kineticNow;
-    potential = potentialNow;
-    angularMomentum = momentumNow;
+    kinetic = tally.kinetic;
+    potential = tally.potential;
+    angularMomentum = tally.momentum;
     if (started) return;
     initial = total();
     initialCrease = crease();

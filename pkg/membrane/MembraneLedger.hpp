@@ -5,6 +5,8 @@
 
 namespace yade {
 
+class FreeHub;
+
 class MembraneLedger : public GlobalEngine {
 public:
     void action() override;
@@ -82,8 +84,14 @@ public:
 private:
     long upToDate_ = -1; ///< step to which all values belong
 
+    struct Tally;
+    const FreeHub* hubOfThisStep() const;
     std::size_t entryOf(const ::membrane::Sweep& sweep, int channel);
+    void countNodes(Tally& tally, const FreeHub* hub, const std::size_t* entry) const;
+    static void countHub(Tally& tally, const FreeHub& hub);
     void bookContacts();
+    void bookWorks(const Tally& tally);
+    void bringUpToDate(const Tally& tally);
 };
 REGISTER_SERIALIZABLE(MembraneLedger);
 

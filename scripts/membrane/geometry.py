@@ -316,7 +316,7 @@ def _near_pairs(ones, others):
     order = np.argsort(at, kind="stable")
     other, at = other[order], at[order]
     one, wanted = all_cells(begin, cells(most))
-    start, stop = (np.searchsorted(at, wanted, side=side) for side in ("left", "right"))
+    start, stop = np.searchsorted(at, wanted), np.searchsorted(at, wanted, side="right")
     shares = np.cumsum(stop - start) // MOST_PAIRS
     for piece in np.split(np.arange(len(one)), np.flatnonzero(np.diff(shares)) + 1):
         row, step = _counted(stop[piece] - start[piece])

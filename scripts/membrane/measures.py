@@ -6,6 +6,7 @@ the spin axis. A measure is one entry of a list below: rows of history.csv, thei
 pages, tables and summary.json all go through these lists.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
 from typing import Any, Callable, NamedTuple
@@ -79,7 +80,7 @@ class Outcome:
     shown: Shown | None = None
 
 
-def deployment_rate(mesh, positions):
+def deployment_rate(mesh: Any, positions: np.ndarray) -> float:
     """Area inside the outer edge, projected on the spin plane, over its flat value [-].
 
     1 for the flat sail. The shoelace formula: parts of the loop run through clockwise count
@@ -90,36 +91,36 @@ def deployment_rate(mesh, positions):
     return float(0.5 * twice / mesh.outer_width**2)
 
 
-def mean_tip_radius(mesh, positions):
+def mean_tip_radius(mesh: Any, positions: np.ndarray) -> float:
     """Mean distance of the four tips from the axis [m]; flat: outer_width / sqrt(2)."""
     return float(_radius(positions[mesh.tips]).mean())
 
 
-def mean_edge_middle_radius(mesh, positions):
+def mean_edge_middle_radius(mesh: Any, positions: np.ndarray) -> float:
     """Mean distance of the outer edges' middles from the axis [m]; flat: outer_width / 2."""
     middles = positions[mesh.outer_edge_middles]  # between two nodes, or twice the same
     return float(_radius(0.5 * (middles[:, 0] + middles[:, 1])).mean())
 
 
-def area_strain(mesh, positions, rest=None):
+def area_strain(mesh: Any, positions: np.ndarray, rest: np.ndarray | None = None) -> np.ndarray:
     """Relative growth (T,) of the triangles' areas [-]; `rest` (T,) [m2] if known already."""
     if rest is None:
         rest = triangle_areas(mesh.nodes, mesh.triangles)
     return triangle_areas(positions, mesh.triangles) / rest - 1
 
 
-def tip_azimuths(mesh, positions):
+def tip_azimuths(mesh: Any, positions: np.ndarray) -> np.ndarray:
     """Azimuths (4,) of the tips [rad] in (-pi, pi], counter-clockwise from +x."""
     x, y = positions[mesh.tips, :2].T
     return np.arctan2(y, x)
 
 
-def nearest_turn(angle, reference):
+def nearest_turn(angle: np.ndarray, reference: np.ndarray) -> np.ndarray:
     """`angle` [rad] shifted by whole turns to within half a turn of `reference` [rad]."""
     return angle - 2 * np.pi * np.round((angle - reference) / (2 * np.pi))
 
 
-def phase_difference(azimuths, spool_angles):
+def phase_difference(azimuths: np.ndarray, spool_angles: np.ndarray) -> np.ndarray:
     """Phase difference between each tip and the spool over time.
 
     Parameters
@@ -144,13 +145,13 @@ def _radius(points):
     return np.hypot(points[:, 0], points[:, 1])
 
 
-def first_time_above(time, values, level):
+def first_time_above(time: np.ndarray, values: np.ndarray, level: float) -> float | None:
     """First of the times (S,) at which `values` (S,) exceed `level`; None if they never do."""
     above = np.flatnonzero(np.asarray(values) > level)
     return float(time[above[0]]) if len(above) else None
 
 
-def swing(time, phase):
+def swing(time: np.ndarray, phase: np.ndarray) -> dict[str, Any]:
     """How far and how fast the tips swing against the spool.
 
     Parameters
@@ -175,7 +176,7 @@ def swing(time, phase):
     }
 
 
-def lag_and_half_period(time, phase):
+def lag_and_half_period(time: np.ndarray, phase: np.ndarray) -> tuple[float, float]:
     """Amplitude and half the period of the phase difference; parameters as in `swing`.
 
     Returns
@@ -376,9 +377,12 @@ HUB = (
 # ------------------------------------------------------------------------------ outcomes of runs
 
 
-def summarised(measures):
+def summarised(measures: Sequence[Measure]) -> tuple[Outcome, ...]:
     """Outcomes that the `summary` of Measures asks for."""
-    words = {"final": ("{} at the end", lambda v: v[-1]), "largest": ("largest {}", np.max)}
+    words: dict[str, tuple] = {
+        "final": ("{} at the end", lambda v: v[-1]),
+        "largest": ("largest {}", np.max),
+    }
     found = []
     for m in measures:
         for which in m.summary:
@@ -389,11 +393,15 @@ def summarised(measures):
                     f"{which}_{m.name}",
                     m.unit,
                     label,
-                    lambda h, name=m.name, pick=pick: float(pick(h[name])),
+                    _picked(m.name, pick),
                     m.shown,
                 )
             )
     return tuple(found)
+
+
+def _picked(column, pick):
+    return lambda h: float(pick(h[column]))
 
 
 def _time_above(column):
@@ -430,7 +438,7 @@ def _late(column):
     return lambda h: float(np.mean(h[column][h["time"] >= 0.75 * h["time"][-1]]))
 
 
-def spin_by_momentum(history):
+def spin_by_momentum(history: dict[str, np.ndarray]) -> np.ndarray:
     """Spin (S,) [rad/s] that the angular momentum makes of the shape, on a free hub."""
     return history["angular_momentum"] / history["inertia"]
 
@@ -509,20 +517,20 @@ class Plot(NamedTuple):
     lines: list[Measure]
 
 
-def in_plots(measures, history):
+def in_plots(measures: Sequence[Measure], history: dict[str, np.ndarray]) -> list[Plot]:
     """Plots of those Measures that have one and are columns of a history, in their order.
 
     What is 0 throughout, as the spool's work where there is none, would hide other lines: it is
     left out.
     """
-    found = {}
+    found: dict[str, list[Measure]] = {}
     for m in measures:
         if m.plot and m.name in history:
             found.setdefault(m.plot, []).append(m)
     result = []
     for title, lines in found.items():
         told = [m for m in lines if history[m.name].any()] or lines[:1]
-        result.append(Plot(title, *(lines[0].shown or (lines[0].unit, 1.0)), told))
+        result.append(Plot(title, *(lines[0].shown or Shown(lines[0].unit, 1.0)), told))
     return result
 
 
@@ -530,7 +538,7 @@ EVERY = SQUARE + SHEET + HUB + LEDGER  # whichever a run has
 EVERY_OUTCOME = SQUARE_OUTCOMES + SHEET_OUTCOMES + HUB_OUTCOMES + LEDGER_OUTCOMES
 
 
-def table(found):
+def table(found: dict) -> list[list[str]]:
     """Rows of label, value and unit, all texts, of what a summary tells among its measures."""
     known, rows = {outcome.name: outcome for outcome in EVERY_OUTCOME}, []
     for name, value in found.items():

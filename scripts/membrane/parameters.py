@@ -7,10 +7,12 @@ command line, yade-batch table and summary.json all come from it.
 
 import argparse
 import os
+from collections.abc import Callable
 from dataclasses import Field, asdict, dataclass, field, fields, is_dataclass
 from math import inf, pi
 from numbers import Real
-from typing import ClassVar
+from pathlib import Path
+from typing import Any, ClassVar
 
 from .files import BadFile, read_object, shown
 
@@ -28,8 +30,16 @@ MOST_STEPS = 2**53  # of a run: more cannot be told apart
 
 
 def parameter(
-    default, unit, source, text, least=0.0, most=inf, above=False, choices=None, sets=None
-):
+    default: Any,
+    unit: str,
+    source: str,
+    text: str,
+    least: float = 0.0,
+    most: float = inf,
+    above: bool = False,
+    choices: tuple[str, ...] | None = None,
+    sets: str | None = None,
+) -> Any:
     """A field of a dataclass of parameters.
 
     Parameters
@@ -44,13 +54,19 @@ def parameter(
     sets : str, optional
         The attribute of a class of YADE that it sets, as "Membrane.alpha".
     """
-    about = {"unit": unit, "source": source, "text": text, "least": least, "most": most}
+    about: dict[str, Any] = {
+        "unit": unit,
+        "source": source,
+        "text": text,
+        "least": least,
+        "most": most,
+    }
     return field(
         default=default, metadata={**about, "above": above, "choices": choices, "sets": sets}
     )
 
 
-def changed(default, **about):
+def changed(default: Any, **about: Any) -> Any:
     """A field for `with_defaults`, of another default and with other metadata than it had."""
     return field(default=default, metadata=about)
 
@@ -59,7 +75,7 @@ class Refused(argparse.ArgumentTypeError, ValueError):
     """A word that cannot be what it should: argparse tells why, and others may catch it."""
 
 
-def number(word):
+def number(word: str) -> float:
     """A number from a word, as of the command line."""
     try:
         return float(word)
@@ -67,20 +83,20 @@ def number(word):
         raise Refused(f"must be a number, not {shown(word)}") from None
 
 
-def whole(word):
+def whole(word: str) -> int:
     """A whole number from a word: 36, 36.0 and 1e3 are such."""
     try:
-        value = int(word)
+        value: float = int(word)
     except ValueError:  # it has a point, an exponent, too many digits, or is none
         value = number(word)
-        if value not in (inf, -inf) and not value.is_integer():
+        if value not in (inf, -inf) and not float(value).is_integer():
             raise Refused(f"must be a whole number, not {shown(word)}") from None
     if abs(value) > LARGEST_WHOLE:
         raise Refused(f"{shown(word)} is too large a number")
     return int(value)
 
 
-def check_name(path):
+def check_name(path: str | Path) -> None:
     """Raise Refused unless the whole name of a file or a folder can be written as UTF-8."""
     try:
         os.path.abspath(path).encode()
@@ -298,7 +314,7 @@ class SpinUp:
     )
 
 
-def with_defaults(**values):
+def with_defaults(**values: Any) -> Callable:
     """Decorator of a dataclass of parameters, whose parts have other defaults than these `values`.
 
     Some have another text, too: then a value is a field.
@@ -312,7 +328,7 @@ def with_defaults(**values):
             default = value.default if isinstance(value, Field) else value
             kind.__annotations__[name] = item.type
             setattr(kind, name, field(default=default, metadata=about))
-        return dataclass(frozen=True)(kind)
+        return kind
 
     return change
 
@@ -330,6 +346,7 @@ class SceneParts(Engines, Hub, Air, Creases, Film):
         check(self)
 
 
+@dataclass(frozen=True)
 @with_defaults(
     alpha_crease=100.0,
     beta=0.0,
@@ -374,17 +391,18 @@ class RunParameters(Run, SceneParts):
         if self.dt:
             check_steps(self.duration, self.dt)
 
-    def as_dict(self):
+    def as_dict(self) -> dict[str, Any]:
         """Values by name."""
         return asdict(self)
 
 
+@dataclass(frozen=True)
 @with_defaults(dt=5e-6)
 class SailParameters(RunParameters, SpinUp, Tethers, Spool, SquareSail, sail="square"):
     """Parameters of the paper's deployment: as of SceneParameters."""
 
 
-def check(parameters):
+def check(parameters: Any) -> None:
     """Raise ValueError naming the first of some parameters that is out of range.
 
     Others get the type that is theirs: 36.0 becomes 36, and 3 becomes 3.0, as may be.
@@ -395,7 +413,7 @@ def check(parameters):
         object.__setattr__(parameters, item.name, item.type(value))
 
 
-def check_steps(duration, dt):
+def check_steps(duration: float, dt: float) -> None:
     """Raise ValueError if a duration [s] is more steps of `dt` [s] than can be counted."""
     if duration / dt > MOST_STEPS:
         raise ValueError(
@@ -420,7 +438,7 @@ def _check(item, value):
         if not isinstance(value, str) or "\0" in value:
             raise ValueError(f"{item.name} = {shown(value)} must be a text")
         return
-    if not isinstance(value, Real) or isinstance(value, bool):
+    if isinstance(value, bool) or not isinstance(value, Real):
         raise ValueError(f"{item.name} = {shown(value)} must be a number")
     try:
         float(value)
@@ -443,7 +461,7 @@ def _range(about):
     return words + (f" and <= {about['most']:g}" if about["most"] < inf else "")
 
 
-def describe(item, default=None):
+def describe(item: Field, default: Any = None) -> str:
     """Meaning, unit, range and default of a parameter in words, for help texts.
 
     Parameters
@@ -463,7 +481,7 @@ def describe(item, default=None):
     return f"{about['text']}{unit} ({extent}{more}default {words})"
 
 
-def attributes(kind, parameters):
+def attributes(kind: str, parameters: Any) -> dict[str, Any]:
     """Attributes of a class of YADE, by name, that follow from parameters: a dict.
 
     Parameters
@@ -480,7 +498,7 @@ def attributes(kind, parameters):
     return found
 
 
-def read_values(path, kind=SailParameters):
+def read_values(path: str | Path, kind: Any = SailParameters) -> dict[str, Any]:
     """Values of parameters by name from a JSON file: such an object, or a summary.json of a run.
 
     Raises
@@ -496,7 +514,7 @@ def read_values(path, kind=SailParameters):
     return {name: getattr(complete, name) for name in values}
 
 
-def from_values(path, values, kind=SailParameters):
+def from_values(path: str | Path, values: dict, kind: Any = SailParameters) -> Any:
     """Parameters from a dict of values by name that a file holds; BadFile if one is wrong."""
     known = {item.name for item in fields(kind)}
     for name in values:

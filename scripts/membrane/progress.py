@@ -3,7 +3,7 @@
 
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import TextIO
 
@@ -53,7 +53,7 @@ class Progress:
 
 @contextmanager
 def stages(
-    label: str, weights: dict[str, float], silent: bool = False, stream: TextIO | None = None
+    label: str, weights: Mapping[str, float], silent: bool = False, stream: TextIO | None = None
 ) -> Iterator[Callable[[str], None]]:
     """Show by name which stage of some work has begun, and at the end how long all took.
 

@@ -6,11 +6,14 @@ Run them by `scripts/run.sh NAME [options]`, or by `yade -n -x scripts/NAME.py [
 
 import importlib
 import sys
+from typing import Any
 
 from .errors import plain_errors
 
 
-def run(command, stopped="stopped by Ctrl-C", module=None, **options):
+def run(
+    command: str, stopped: str = "stopped by Ctrl-C", module: str | None = None, **options: Any
+) -> None:
     """Run `main` of a command's module; if it returns anything, that is the exit status.
 
     Parameters

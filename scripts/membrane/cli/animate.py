@@ -7,7 +7,7 @@ from ..view import animation
 from .options import folder
 
 
-def main():
+def main() -> None:
     """Do it for each folder; sys.exit with one sentence if that cannot be."""
     parser = argparse.ArgumentParser(prog="animate", description=__doc__)
     parser.add_argument("folders", nargs="+", type=folder, metavar="FOLDER", help="output of a run")

@@ -4,6 +4,7 @@
 import difflib
 import os
 from dataclasses import fields
+from typing import Any
 
 from yade import utils
 from yade.wrapper import Omega
@@ -11,14 +12,14 @@ from yade.wrapper import Omega
 from ..files import shown
 
 
-def batch_sail():
+def batch_sail() -> str:
     """The word of the column `sail` of this job's row, as of the command line; "" if none."""
     file, line = _place()
     word = _row(file, line).get("sail", "") if file else ""
     return word[1:-1] if word[:1] in ("'", '"') and word[-1:] == word[:1] else word
 
 
-def batch_row(kind):
+def batch_row(kind: Any) -> tuple[dict, str | None]:
     """Parameters and name of this job of yade-batch; none outside a batch.
 
     Parameters
@@ -66,7 +67,7 @@ def _row(file, line):
     return utils.TableParamReader(file).paramDict().get(int(line), {})
 
 
-def folder_of(description):
+def folder_of(description: str) -> str:
     """Name of a folder for a row of this `description`; ValueError if that can be none."""
     name = description.replace("/", "_")
     if name in ("", ".", "..") or not name.isprintable():

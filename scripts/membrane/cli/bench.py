@@ -31,7 +31,7 @@ MODULES = {
 RESULTS = REFERENCE / "bench.json"
 
 
-def command_line():
+def command_line() -> argparse.Namespace:
     """Parsed sys.argv."""
     about = "; ".join(f"{name}: {text}" for name, text in MODULES.items())
     parser = argparse.ArgumentParser(
@@ -55,7 +55,7 @@ def command_line():
     return parser.parse_args()
 
 
-def made_with():
+def made_with() -> dict:
     """Versions of everything, the machine, and the date."""
     used = versions()
     del used["threads"]
@@ -67,7 +67,7 @@ def made_with():
     }
 
 
-def main():
+def main() -> int:
     """Measure, print the tables, write the file; returns the exit status."""
     arguments = command_line()
     tell = announcer("bench")

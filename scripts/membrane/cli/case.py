@@ -7,13 +7,14 @@ complete or has diverged.
 
 import argparse
 import sys
+from typing import Any
 
 from ..results.case_folder import COMPLETE
 from ..run.case import run_case
 from .options import add_out, chosen_sail, from_arguments, parse, sails_text
 
 
-def command_line(kind, words):
+def command_line(kind: Any, words: list[str]) -> argparse.Namespace:
     """Parsed words of the command line."""
     parser = argparse.ArgumentParser(
         prog="case",
@@ -34,7 +35,7 @@ def command_line(kind, words):
     return parse(parser, kind, words)
 
 
-def main():
+def main() -> None:
     """Run the case; sys.exit with one sentence if that cannot be."""
     kind, words = chosen_sail(sys.argv[1:])
     arguments = command_line(kind, words)

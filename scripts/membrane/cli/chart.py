@@ -16,7 +16,7 @@ from ..study.verification.chart_picture import TITLES, draw
 from .options import add_out, count
 
 
-def main():
+def main() -> None:
     """Run the grid, write table and picture."""
     parser = argparse.ArgumentParser(prog="chart", description=__doc__.splitlines()[0])
     parser.add_argument("--rounds", type=count, default=3, help="rounds of the timing (default 3)")

@@ -9,6 +9,7 @@ import argparse
 import contextlib
 import sys
 from pathlib import Path
+from typing import Any
 
 from yade import utils
 
@@ -25,7 +26,7 @@ PLACES = {"square": "", "sheet": ""}  # below out/, unless called as the kind of
 STAGES = {"spin_up": "spin-up", "run": "run", "pictures": "pictures"}
 
 
-def command_line(kind, words):
+def command_line(kind: Any, words: list[str]) -> argparse.Namespace:
     """Parsed words of the command line."""
     parser = argparse.ArgumentParser(
         prog=Path(sys.argv[0]).stem, description="Deploy a solar sail.", epilog=sails_text()
@@ -42,7 +43,7 @@ def command_line(kind, words):
     return parse(parser, kind, words)
 
 
-def main(sail="square"):
+def main(sail: str = "square") -> None:
     """Deploy a sail, by default of some kind; sys.exit with one sentence if that cannot be."""
     words = [batch_sail(), *sys.argv[1:]] if batch_sail() else sys.argv[1:]
     kind, words = chosen_sail(words, sail)
@@ -55,7 +56,7 @@ def main(sail="square"):
     made = SAILS[kind.sail].sail(p)
     if made.words:
         print(made.words, flush=True)
-    look = window.Watch() if arguments.watch else driver.look_away
+    look: Any = window.Watch() if arguments.watch else driver.look_away
     with new_results(out) as part:
         pictures, page = not arguments.no_pictures, not arguments.no_report
         summary = driver.deploy(p, part, pictures, page=page, look=look, sail=made)
@@ -71,7 +72,7 @@ def main(sail="square"):
     utils.waitIfBatch()
 
 
-def tell(summary, out):
+def tell(summary: dict, out: Path) -> None:
     """Say what came of a run, and which files it left in the folder `out`."""
     rows = table(summary["measures"])
     width = max(len(label) for label, *_ in rows)

@@ -14,7 +14,7 @@ from ..study import disk
 from .options import add_out
 
 
-def main():
+def main() -> None:
     """Vibrate the disks, tell the errors and draw."""
     parser = argparse.ArgumentParser(prog="disk", description=__doc__.splitlines()[0])
     add_out(parser, "out/disk", "folder of disk.png (default: {})")

@@ -5,6 +5,7 @@ import os
 import signal
 import sys
 import traceback
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
 from ..progress import Terminated
@@ -15,7 +16,7 @@ DEBIAN = {"vtkmodules": "vtk9"}  # packages whose names in Python and in Debian 
 
 
 @contextmanager
-def plain_errors(command, stopped="stopped by Ctrl-C"):
+def plain_errors(command: str, stopped: str = "stopped by Ctrl-C") -> Iterator[None]:
     """End the program with one sentence where what is inside raises an error that is foreseen.
 
     What a command imports beside the standard library belongs inside, too: a package may be
@@ -33,7 +34,7 @@ def plain_errors(command, stopped="stopped by Ctrl-C"):
     heard = [s for s in (signal.SIGTERM, signal.SIGHUP) if signal.getsignal(s) != signal.SIG_IGN]
     before = {number: signal.signal(number, _terminate) for number in heard}
     with suppress(AttributeError):  # of a caller's own
-        sys.stdout.reconfigure(errors="backslashreplace")  # as standard error
+        getattr(sys.stdout, "reconfigure")(errors="backslashreplace")  # as standard error
     try:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])  # which scripts/run.sh blocks
         yield
@@ -49,8 +50,10 @@ def plain_errors(command, stopped="stopped by Ctrl-C"):
         package = (error.name or "").partition(".")[0]
         if package == "yade":
             sys.exit(f"{command}: no YADE is running; scripts/run.sh {command} starts it")
-        by_hand = f"apt-get install python3-{DEBIAN.get(package, package)}"
-        sys.exit(f"{command}: {error}; scripts/run.sh {command} installs it, or by hand: {by_hand}")
+        command_line = f"apt-get install python3-{DEBIAN.get(package, package)}"
+        sys.exit(
+            f"{command}: {error}; scripts/run.sh {command} installs it, or by hand: {command_line}"
+        )
     except BrokenPipeError:
         sys.exit(f"{command}: nobody reads what it prints any more")
     except (ImportError, ValueError, RuntimeError, OSError) as error:

@@ -3,28 +3,30 @@
 
 import argparse
 import os
-from dataclasses import fields
+from collections.abc import Iterable
+from dataclasses import Field, fields
 from pathlib import Path
+from typing import Any
 
 from ..parameters import PARSERS, Refused, SailParameters, check_name, describe, read_values, whole
 from ..run.sails import SAILS
 
 
-def folder(text):
+def folder(text: str) -> Path:
     """A Path from a word of the command line, which must not be empty."""
     if not text:
         raise Refused("must name a folder")
     return file(text)
 
 
-def file(text):
+def file(text: str) -> Path:
     """A Path from a word of the command line; Refused unless its name is UTF-8."""
     path = Path(os.path.expanduser(text))
     check_name(path)
     return path
 
 
-def count(text):
+def count(text: str) -> int:
     """A whole number from a word of the command line, which must be at least 1."""
     found = whole(text)
     if found < 1:
@@ -32,19 +34,28 @@ def count(text):
     return found
 
 
-def add_out(parser, default=None, text="default: {}"):
+def add_out(
+    parser: argparse.ArgumentParser, default: str | Path | None = None, text: str = "default: {}"
+) -> None:
     """Add the option --out, a folder; its help is `text` with the default."""
     text, default = text.format(default), default and Path(default)
     parser.add_argument("--out", type=folder, default=default, metavar="DIR", help=text)
 
 
-def add_only(parser, names, text, word="MODULE"):
+def add_only(
+    parser: argparse.ArgumentParser, names: Iterable[str], text: str, word: str = "MODULE"
+) -> None:
     """Add the option --only for some of `names`; all by default."""
-    about = {"choices": names, "default": list(names), "metavar": word, "help": text}
+    about: dict[str, Any] = {
+        "choices": names,
+        "default": list(names),
+        "metavar": word,
+        "help": text,
+    }
     parser.add_argument("--only", nargs="+", **about)
 
 
-def chosen_sail(words, default="square"):
+def chosen_sail(words: list[str], default: str = "square") -> tuple[Any, list[str]]:
     """Which kind of sail the first word of a command line means, and the words that are left.
 
     Parameters
@@ -72,13 +83,18 @@ def chosen_sail(words, default="square"):
     return SAILS[default].parameters, words
 
 
-def sails_text():
+def sails_text() -> str:
     """What a help text tells of the kinds of sail."""
     kinds = "; ".join(f"{name}, {kind.title}" for name, kind in SAILS.items())
     return f"SAIL, if any, comes first: {kinds}; or the name of such a file (default square)."
 
 
-def add_arguments(parser, kind=SailParameters, several=None, defaults=None):
+def add_arguments(
+    parser: argparse.ArgumentParser,
+    kind: Any = SailParameters,
+    several: dict | None = None,
+    defaults: dict | None = None,
+) -> None:
     """Add one option for every parameter to an argparse parser, grouped by source.
 
     Parameters
@@ -99,7 +115,15 @@ def add_arguments(parser, kind=SailParameters, several=None, defaults=None):
                 add_argument(group, item, chosen.get(item.name, item.default))
 
 
-def parse(parser, kind=SailParameters, words=None, *, several=None, defaults=None, root=None):
+def parse(
+    parser: argparse.ArgumentParser,
+    kind: Any = SailParameters,
+    words: list[str] | None = None,
+    *,
+    several: dict | None = None,
+    defaults: dict | None = None,
+    root: argparse.ArgumentParser | None = None,
+) -> argparse.Namespace:
     """Arguments of an argparse parser with options for all parameters and one for a file of them.
 
     What is given on the command line wins over the file, which wins over `defaults`, a dict.
@@ -142,7 +166,7 @@ def _named(word):
     return word
 
 
-def add_argument(group, item, default):
+def add_argument(group: Any, item: Field, default: Any) -> None:
     """Add the option for one parameter to an argparse parser or group.
 
     Parameters
@@ -173,7 +197,9 @@ def add_argument(group, item, default):
     )
 
 
-def from_arguments(arguments, overrides=None, kind=SailParameters):
+def from_arguments(
+    arguments: argparse.Namespace, overrides: dict | None = None, kind: Any = SailParameters
+) -> Any:
     """Parameters from parsed arguments; `overrides` (a dict, as from a batch table) win."""
     values = {item.name: getattr(arguments, item.name) for item in fields(kind)}
     for name, value in (overrides or {}).items():

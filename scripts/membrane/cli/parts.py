@@ -11,7 +11,7 @@ from ..study import parts
 from .options import count
 
 
-def main():
+def main() -> None:
     """Measure, write the table, print the advice."""
     parser = argparse.ArgumentParser(prog="parts", description=__doc__.splitlines()[0])
     parser.add_argument(

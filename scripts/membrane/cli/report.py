@@ -7,7 +7,7 @@ from ..view import report
 from .options import folder
 
 
-def main():
+def main() -> None:
     """Do it for each folder; sys.exit with one sentence if that cannot be."""
     parser = argparse.ArgumentParser(prog="report", description=__doc__)
     parser.add_argument("folders", nargs="+", type=folder, metavar="FOLDER", help="output of a run")

@@ -22,7 +22,7 @@ TOPICS = {
 }
 
 
-def command_line():
+def command_line() -> argparse.Namespace:
     """Parsed sys.argv."""
     topics = "; ".join(f"{name}: {text}" for name, text in TOPICS.items())
     parser = argparse.ArgumentParser(prog="stability", description=__doc__, epilog=topics)
@@ -33,7 +33,7 @@ def command_line():
     return parser.parse_args()
 
 
-def main():
+def main() -> int:
     """Run the topics in turn."""
     arguments = command_line()
     for name in arguments.only:

@@ -20,7 +20,7 @@ MODULES = ["forces", "sheets", "spinning", "deployment", "paper"]
 RESULTS = REFERENCE / "verification.json"
 
 
-def command_line():
+def command_line() -> argparse.Namespace:
     """Parsed sys.argv."""
     parser = argparse.ArgumentParser(prog="verify", description="Run the verification suite.")
     text = f"run only these of {', '.join(MODULES)}; the others keep their results in the file"
@@ -34,7 +34,7 @@ def command_line():
     return parser.parse_args()
 
 
-def run(name, full):
+def run(name: str, full: bool) -> list:
     """Run one module and print its table; returns its list of Check."""
     start = time.monotonic()
     found = importlib.import_module(f"membrane.study.verification.{name}").checks(full)
@@ -45,7 +45,7 @@ def run(name, full):
     return found
 
 
-def save(name, found):
+def save(name: str, found: list) -> None:
     """Put the results of one module into RESULTS, beside those of the others."""
     entries, made_with = [], {}
     if RESULTS.exists():
@@ -64,7 +64,7 @@ def save(name, found):
     write_json(RESULTS, content)
 
 
-def main():
+def main() -> int:
     """Run the suite; returns the exit status."""
     arguments = command_line()
     modules = [name for name in MODULES if name in arguments.only]

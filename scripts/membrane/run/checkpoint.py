@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import time
+from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
 
@@ -31,17 +32,17 @@ class Checkpoints:
         Wall time [s] between two saves, >= 0; 0: at every occasion.
     """
 
-    def __init__(self, folder, every):
+    def __init__(self, folder: str | Path, every: float) -> None:
         if not every >= 0:
             raise ValueError(f"checkpoint_every = {every} s must be >= 0")
         self.folder, self.every = Path(folder), every
         self._last = time.monotonic()
 
-    def due(self):
+    def due(self) -> bool:
         """Whether it is time for the next one."""
         return time.monotonic() - self._last >= self.every
 
-    def save(self, state):
+    def save(self, state: dict) -> None:
         """Save the scene and `state`, which must go into JSON and tell of what is on the disk.
 
         Raises
@@ -68,7 +69,7 @@ class Checkpoints:
             shutil.rmtree(folder)
         self._last = time.monotonic()
 
-    def load(self, is_whole=lambda state: True):
+    def load(self, is_whole: Callable[[dict], bool] = lambda state: True) -> dict | None:
         """Load the scene of the newest one that is whole; returns its state, None if there is none.
 
         Others are thrown away: the run goes on from an older one, or begins afresh. So are those
@@ -129,7 +130,7 @@ def _sum_of(path):
     return add_to_sum(sha256(), path).hexdigest()
 
 
-def save_scene(path):
+def save_scene(path: str | Path) -> None:
     """Save the scene as O.save does, compressed.
 
     YADE's own compression tries for ever where there is no room on the disk.
@@ -147,6 +148,7 @@ def save_scene(path):
             start_new_session=True,  # Ctrl-C is for us
         )
     failure = ""
+    assert pack.stdin  # it is a pipe
     with pack:
         try:
             Omega().save(f"/proc/self/fd/{pack.stdin.fileno()}", quiet=True)

@@ -5,9 +5,11 @@ import os
 import platform
 import sys
 import time
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import ceil
 from pathlib import Path
+from typing import Any
 
 from .. import __version__, scene  # first, for without YADE it says so
 
@@ -17,11 +19,12 @@ from yade import wrapper as yade_classes
 
 from ..files import write_json
 from ..measures import HUB_OUTCOMES, LEDGER_OUTCOMES
-from ..parameters import Spool, Tethers, attributes, check_steps
+from ..parameters import RunParameters, Spool, Tethers, attributes, check_steps
 from ..progress import Progress, warn
 from ..scene.spool import add_spool
 from ..view import report
-from .kind import FinishedSail
+from .checkpoint import Checkpoints
+from .kind import FinishedSail, Sail
 from .last_good import RUN, SPIN_UP, Diverged, last_good_saved
 from .record import Recorder, is_whole
 from .sails import SAILS
@@ -33,14 +36,14 @@ STEP = 0.5  # of the critical one, by default
 TURN_STEP = 0.05  # rad: what the sail turns in a step, at most, by default
 
 
-def look_away(_):
+def look_away(_: Any) -> None:
     """What those do who do not watch."""
 
 
 # ------------------------------------------------------------------------------ from mesh to scene
 
 
-def build(p, sail=None):
+def build(p: RunParameters, sail: Sail | None = None) -> tuple[Sail, scene.MembraneScene]:
     """Put the sail of parameters into the (empty) scene, hub and what is to be released held.
 
     Parameters
@@ -64,7 +67,7 @@ def build(p, sail=None):
     sail = sail or kind.sail(p)
     mesh = sail.mesh
     masses = np.zeros(len(mesh.nodes))
-    masses[sail.tips] = p.tip_mass
+    masses[sail.tips] = sail.tip_mass
     try:
         membrane = scene.add_membrane(
             mesh.nodes,
@@ -94,7 +97,13 @@ def build(p, sail=None):
     return sail, built
 
 
-def spin_up(built, p, begun=None, keep=None, look=look_away):
+def spin_up(
+    built: scene.MembraneScene,
+    p: Any,
+    begun: dict | None = None,
+    keep: Callable | None = None,
+    look: Callable = look_away,
+) -> dict:
     """Bring a folded sail to rest in the turning frame.
 
     Arguments and result are those of `scene.spin_up`; `look` is called as by `deploy`.
@@ -123,10 +132,10 @@ def spin_up(built, p, begun=None, keep=None, look=look_away):
     )
 
 
-def release(sail, built, spin, dt):
+def release(sail: Sail, built: scene.MembraneScene, spin: float, dt: float) -> None:
     """Release a Sail in its MembraneScene, at a spin [rad/s], with a time step [s]."""
     yade_classes.Omega().dt = dt
-    scene.release(built, spin, sail.held)
+    scene.release(built, spin, sail.held.tolist())
 
 
 @dataclass(frozen=True)
@@ -142,7 +151,7 @@ class Steps:
     between: int
 
 
-def steps_of(p, critical):
+def steps_of(p: RunParameters, critical: float) -> Steps:
     """The Steps that parameters of a run ask for, whose `critical` step [s] is known.
 
     They and the rows are no longer than asked for, and end at the duration.
@@ -179,7 +188,7 @@ def _parts(whole, most):
     return max(1, ceil(whole / most * (1 - 1e-9)))
 
 
-def march(steps, row=0, resumed=None):
+def march(steps: Steps, row: int = 0, resumed: Any = None) -> Iterator[tuple[int, float]]:
     """Run the released sail, from a row on: yields the number of each later row and its time [s].
 
     Parameters
@@ -199,7 +208,15 @@ def march(steps, row=0, resumed=None):
 # --------------------------------------------------------------------------------- one run, whole
 
 
-def deploy(p, folder, pictures=True, checkpoints=None, page=True, look=look_away, sail=None):
+def deploy(
+    p: RunParameters,
+    folder: str | Path,
+    pictures: bool = True,
+    checkpoints: Checkpoints | None = None,
+    page: bool = True,
+    look: Callable = look_away,
+    sail: Sail | None = None,
+) -> dict:
     """Run a sail and write the results into `folder`.
 
     Parameters
@@ -391,10 +408,10 @@ class _Deployment:
 class Stopwatch:
     """Wall time [s] by stage of a run, that of an earlier part of it included."""
 
-    def __init__(self, times=None):
+    def __init__(self, times: dict | None = None) -> None:
         self.times, self._since = dict(times or {}), time.monotonic()
 
-    def lap(self, stage):
+    def lap(self, stage: str) -> dict[str, float]:
         """Count the time since the last call for `stage`; returns all times."""
         now = time.monotonic()
         self.times[stage] = self.times.get(stage, 0.0) + now - self._since
@@ -402,7 +419,7 @@ class Stopwatch:
         return self.times
 
 
-def write_page(folder):
+def write_page(folder: Path) -> None:
     """Write report.html into a run's `folder`, or remove an earlier one and tell why."""
     (folder / report.PAGE).unlink(missing_ok=True)
     try:
@@ -411,7 +428,7 @@ def write_page(folder):
         print(f"no {report.PAGE}: {error}", file=sys.stderr)
 
 
-def versions():
+def versions() -> dict[str, Any]:
     """Versions of everything that the numbers depend on."""
     return {
         "membrane": __version__,

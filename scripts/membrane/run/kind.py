@@ -4,11 +4,11 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
-from .. import measures
+from ..measures import Measure, Outcome
 from ..parameters import RunParameters
 
 
@@ -22,8 +22,8 @@ class Sail:
         With nodes (N, 3) at rest [m], triangles (T, 3), creases (C, 2) and crease_signs (C,), tips.
     start : (N, 3) float, node
         Where to put the nodes [m].
-    tips : (n,) int, node
-        With tip masses.
+    tips, tip_mass : (n,) int, node; float
+        Which nodes bear tip masses, and how much each [kg].
     cables : (K, 2) int, node
         Tethers.
     hub : (n,) int, node
@@ -43,6 +43,7 @@ class Sail:
     mesh: Any
     start: np.ndarray
     tips: np.ndarray
+    tip_mass: float
     cables: np.ndarray = field(default_factory=lambda: np.empty((0, 2), dtype=int))
     hub: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=int))
     touching: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=int))
@@ -72,24 +73,27 @@ class FinishedSail:
     """
 
     sail: Sail
-    parameters: RunParameters
+    parameters: Any
     built: Any
-    history: Mapping
+    history: dict[str, np.ndarray]
     times: np.ndarray
     frames: Sequence
     folder: Path
 
-    def show(self, instants):
+    def show(self, instants: Sequence[float] | np.ndarray) -> tuple[list, np.ndarray]:
         """Shapes (n, N, 3) [m] nearest to some `instants` [s], each once, and their times (n,)."""
         picks = np.unique([int(np.argmin(np.abs(self.times - t))) for t in instants])
         return [self.frames[i] for i in picks], self.times[picks]
 
-    def until(self, last):
+    def until(self, last: int) -> np.ndarray:
         """Six instants [s] up to that of the shape `last`, closer together early on."""
         return self.times[last] * (np.arange(6) / 5) ** 1.5
 
 
-class Kind:
+P = TypeVar("P", bound=RunParameters)
+
+
+class Kind(Generic[P]):
     """A kind of sail; its parameters name it: `RunParameters.sail`.
 
     Attributes
@@ -108,11 +112,11 @@ class Kind:
 
     title: ClassVar[str]
     parameters: ClassVar[type[RunParameters]]
-    measures: ClassVar[tuple[measures.Measure, ...]]
-    outcomes: ClassVar[tuple[measures.Outcome, ...]]
+    measures: ClassVar[tuple[Measure, ...]]
+    outcomes: ClassVar[tuple[Outcome, ...]]
     told: ClassVar[str]
 
-    def sail(self, p: RunParameters) -> Sail:
+    def sail(self, p: P) -> Sail:
         """The sail of parameters `p`; ValueError, in one sentence, if there is none."""
         raise NotImplementedError
 
@@ -120,10 +124,10 @@ class Kind:
         """What to tell where the plugin refuses the sail's membrane."""
         return refusal
 
-    def equip(self, sail: Sail, built: Any, p: RunParameters) -> None:
+    def equip(self, sail: Sail, built: Any, p: P) -> None:
         """Add engines of its own to a scene, if any."""
 
-    def release_rate(self, built: Any, p: RunParameters) -> float:
+    def release_rate(self, built: Any, p: P) -> float:
         """Spin [rad/s] at the release; by default omega."""
         return p.omega
 

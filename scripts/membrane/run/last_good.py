@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What is saved of a run that goes wrong, or is stopped: its last good state."""
 
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -28,13 +29,15 @@ class Diverged(RuntimeError):
         What the engine said that stopped it.
     """
 
-    def __init__(self, stage, time, reason, saved=""):
+    def __init__(self, stage: str, time: float | None, reason: str, saved: str = "") -> None:
         super().__init__(". ".join(filter(None, [reason, saved])))
         self.stage, self.time, self.reason = stage, time, reason
 
 
 @contextmanager
-def last_good_saved(sail, folder, release_step, stopped=True):
+def last_good_saved(
+    sail: scene.MembraneScene, folder: str | Path, release_step: int, stopped: bool = True
+) -> Iterator[None]:
     """Where the run in the block goes wrong or is stopped, save its last good state and say so.
 
     Parameters
@@ -63,7 +66,7 @@ def last_good_saved(sail, folder, release_step, stopped=True):
         raise type(error)(save_last_good(sail, folder)) from None
 
 
-def save_last_good(sail, folder):
+def save_last_good(sail: scene.MembraneScene, folder: str | Path) -> str:
     """Put a MembraneScene back to its last good state, saved in `folder`; returns a sentence."""
     try:
         time = sail.watch.restore()

@@ -2,17 +2,19 @@
 """What a running sail leaves behind: rows of measures, shapes, frames for the pictures."""
 
 from array import array
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from yade import wrapper as yade
 
 from ..files import write_json
 from ..geometry import side_lengths, side_rows, triangle_areas
-from ..measures import HUB, LEDGER, area_strain
+from ..measures import HUB, LEDGER, Measure, area_strain
 from ..results.history import read_history
 from ..results.output import HistoryWriter, VtkSeries, is_whole_series, is_whole_table
+from .kind import Sail
 
 # Fields of the ParaView series: unit, and meaning on a side and on a triangle where it has one.
 SHAPE_FIELDS = {
@@ -70,7 +72,7 @@ class Instant:
         What measures keep from row to row; it goes into JSON.
     """
 
-    def __init__(self, recorder, time):
+    def __init__(self, recorder: Any, time: float) -> None:
         sail, built = recorder.sail, recorder.built
         self.time, self.x = time, built.last_positions()
         self.mesh, self.tips, self.kept = sail.mesh, sail.tips, recorder.kept
@@ -79,9 +81,9 @@ class Instant:
         self.masses, self.rest_areas = recorder.masses, recorder.rest_areas
         self.sides, self.kinds = recorder.sides, recorder.kinds
         self.rest, self.critical = recorder.rest, recorder.critical
-        self._once = {}
+        self._once: dict[Callable, Any] = {}
 
-    def once(self, function):
+    def once(self, function: Callable) -> Any:
         """What a function makes of this instant, computed once."""
         if function not in self._once:
             self._once[function] = function(self)
@@ -112,7 +114,15 @@ class Recorder:
         Their times [s].
     """
 
-    def __init__(self, folder, sail, built, measures, spin_rate, state=None):
+    def __init__(
+        self,
+        folder: str | Path,
+        sail: Sail,
+        built: Any,
+        measures: Sequence[Measure],
+        spin_rate: float,
+        state: dict | None = None,
+    ) -> None:
         self.sail, self.built, self.spin_rate = sail, built, spin_rate
         self.measures = (*measures, *LEDGER, *(HUB if built.hub else ()))
         units = {"time": "s", **{measure.name: measure.unit for measure in self.measures}}
@@ -141,7 +151,7 @@ class Recorder:
         self._columns = {name: array("d", values) for name, values in read_history(table).items()}
         self.frames = Frames(self._film)
 
-    def state(self):
+    def state(self) -> dict:
         """What a Recorder needs to continue this one, ready for JSON; it is on the disk then."""
         return {
             "history": self._history.state(),
@@ -150,7 +160,7 @@ class Recorder:
             "kept": self.kept,
         }
 
-    def history(self, time):
+    def history(self, time: float) -> dict[str, float]:
         """Append the measures of the last step, whose forces acted `time` [s] after the release."""
         at = Instant(self, time)
         row = {"time": time, **{measure.name: measure.of(at) for measure in self.measures}}
@@ -159,13 +169,13 @@ class Recorder:
             column.append(row[name])
         return row
 
-    def told(self, name, row):
+    def told(self, name: str, row: dict[str, float]) -> str:
         """One of the measures of a row, in words."""
         (m,) = [measure for measure in self.measures if measure.name == name]
         unit, factor = m.shown or (m.unit, 1.0)
         return f"{m.label} {factor * row[name]:.3f}{'' if unit == '-' else ' ' + unit}"
 
-    def shape(self, time):
+    def shape(self, time: float) -> None:
         """Append the shape of the last step, at `time` [s], to the ParaView series."""
         x = self.built.last_positions()
         length = side_lengths(x, self.sides)
@@ -193,16 +203,16 @@ class Recorder:
             "crease_angle": angles[np.arange(len(angles)), most],
         }
 
-    def columns(self):
+    def columns(self) -> dict[str, np.ndarray]:
         """What was written to history.csv: arrays (S,) by name."""
         return {name: np.array(values) for name, values in self._columns.items()}
 
-    def close(self):
+    def close(self) -> None:
         """Close history.csv."""
         self._history.close()
 
 
-def is_whole(folder, state):
+def is_whole(folder: str | Path, state: dict) -> bool:
     """Whether a folder still holds what the `state` of a Recorder tells of."""
     folder = Path(folder)
     return is_whole_table(folder / TABLE, state["history"]) and all(
@@ -213,7 +223,7 @@ def is_whole(folder, state):
 class Frames(Sequence):
     """Shapes (N, 3) [m] of a series, each read back when it is asked for: all would fill memory."""
 
-    def __init__(self, series):
+    def __init__(self, series: VtkSeries) -> None:
         self._series = series
 
     def __len__(self):

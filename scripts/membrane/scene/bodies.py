@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A membrane's bodies: its film, nodes and sides."""
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import ArrayLike
 from yade import wrapper as yade
 
 from ..progress import stages
@@ -10,7 +13,9 @@ LARGE = 100_000  # nodes: adding so many takes about a second, so that progress 
 ADDING = {"rest state": 2, "bodies": 2, "interactions": 6}  # stages and their shares of the time
 
 
-def film(young=3.2e9, poisson=0.34, density=1420.0, thickness=7.5e-6):
+def film(
+    young: float = 3.2e9, poisson: float = 0.34, density: float = 1420.0, thickness: float = 7.5e-6
+) -> Any:
     """Material of the film; the defaults are those of the paper's Table 1.
 
     Parameters
@@ -37,17 +42,17 @@ def film(young=3.2e9, poisson=0.34, density=1420.0, thickness=7.5e-6):
 
 
 def add_membrane(
-    nodes,
-    triangles,
-    creases=(),
-    crease_signs=(),
-    cables=(),
-    positions=None,
-    material=None,
-    radius=5e-4,
-    interactions=True,
-    **options,
-):
+    nodes: ArrayLike,
+    triangles: ArrayLike,
+    creases: ArrayLike = (),
+    crease_signs: ArrayLike = (),
+    cables: ArrayLike = (),
+    positions: ArrayLike | None = None,
+    material: Any = None,
+    radius: float = 5e-4,
+    interactions: bool = True,
+    **options: Any,
+) -> Any:
     """Add a membrane to the scene: one sphere a node, one interaction a side.
 
     Parameters

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Ordinary contacts of a membrane's nodes with other bodies, by YADE's own functors."""
 
+from collections.abc import Sequence
+from typing import Any
+
 from yade import wrapper as yade
 
 from . import spool
@@ -14,7 +17,7 @@ SHAPES = {
 }
 
 
-def check(bodies, integrated):
+def check(bodies: Sequence[int], integrated: int) -> None:
     """Refuse what nodes would fall through, or what would not move.
 
     Parameters
@@ -53,7 +56,7 @@ def check(bodies, integrated):
             )
 
 
-def collider(nodes):
+def collider(nodes: int) -> Any:
     """Collider of nodes of the mask `nodes` with other bodies.
 
     Nodes do not meet one another, nor facets of the spool: looking at such pairs would take time.
@@ -69,6 +72,6 @@ def collider(nodes):
     )
 
 
-def geometry():
+def geometry() -> list:
     """New functors for the geometry of such contacts."""
     return [functor() for _, functor in SHAPES.values()]

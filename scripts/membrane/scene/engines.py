@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The engines that move a membrane."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from yade import wrapper as yade
 
-from ..parameters import SceneParameters, attributes
+from ..parameters import SceneParameters, SceneParts, attributes
 from ..progress import warn
 from . import contacts, hub, spool
 
@@ -46,50 +48,56 @@ class MembraneScene:
         Turns the driven bodies in place of `rotation`; dead during spin-up.
     """
 
-    membrane: object
-    forces: object
-    field: object
-    rotation: object
-    spool: object
-    newton: object
-    ledger: object
-    watch: object = None
-    resetter: object = None
+    membrane: Any
+    forces: Any
+    field: Any
+    rotation: Any
+    spool: Any
+    newton: Any
+    ledger: Any
+    watch: Any = None
+    resetter: Any = None
     driven: list = field(default_factory=list)
-    hub: object = None
+    hub: Any = None
 
-    def positions(self):
+    def positions(self) -> np.ndarray:
         """Present positions of the nodes, (N, 3) [m]."""
         bodies = yade.Omega().bodies
         return np.array([bodies[i].state.pos for i in self.membrane.bodyIds])
 
-    def place(self, positions):
+    def place(self, positions: np.ndarray) -> None:
         """Put the nodes at `positions` (N, 3) [m]."""
         bodies = yade.Omega().bodies
         for i, x in zip(self.membrane.bodyIds, positions.tolist()):
             bodies[i].state.pos = x
 
     @property
-    def fused(self):
+    def fused(self) -> bool:
         """Whether the nodes are moved by a MembraneIntegrator."""
         return hasattr(self.forces, "exchangePeriod")
 
-    def last_positions(self):
+    def last_positions(self) -> np.ndarray:
         """Positions of the nodes as the last step's forces saw them, (N, 3) [m]."""
         return np.frombuffer(self.forces.lastPositionsBytes()).reshape(-1, 3)
 
-    def masses(self):
+    def masses(self) -> np.ndarray:
         """Masses of the nodes, (N,) [kg]."""
         return np.array(self.membrane.masses)
 
-    def hold(self, nodes, held=True):
+    def hold(self, nodes: Iterable[int], held: bool = True) -> None:
         """Hold `nodes` (ids in the mesh) where they are; `held` False: let them go."""
         bodies, ids = yade.Omega().bodies, self.membrane.bodyIds
         for node in nodes:
             bodies[ids[node]].state.blockedDOFs = "xyzXYZ" if held else "XYZ"
 
 
-def set_engines(membrane, parameters=SceneParameters(), *, driven=(), touching=()):
+def set_engines(
+    membrane: Any,
+    parameters: SceneParts = SceneParameters(),
+    *,
+    driven: Sequence[int] = (),
+    touching: Sequence[int] = (),
+) -> MembraneScene:
     """Set O.engines to those that a membrane needs; each that a scene does without is left out.
 
     Parameters
@@ -227,7 +235,7 @@ def _interaction_loop(membrane, fused, touching):
     return yade.InteractionLoop(geometry, physics, laws)
 
 
-def renew_collider():
+def renew_collider() -> None:
     """Put a new collider in the place of the one that `set_engines` made, if any.
 
     It counts how often it was loaded, so that else two saves of one state would differ.
@@ -239,12 +247,12 @@ def renew_collider():
     ]
 
 
-def loaded():
+def loaded() -> MembraneScene:
     """The MembraneScene of a scene that `set_engines` made and O.load brought back.
 
     Its only membrane counts; `driven` lists bodies as its engines do.
     """
-    found = {}
+    found: dict[str, Any] = {}
     for engine in yade.Omega().engines:
         found.setdefault(type(engine).__name__, engine)
     forces = found.get("MembraneIntegrator") or found["MembraneForceEngine"]
@@ -266,7 +274,7 @@ def loaded():
     )
 
 
-def sort_interactions():
+def sort_interactions() -> None:
     """Let YADE take interactions one by one in the order of their ids, which costs time.
 
     Then a saved scene goes on bit for bit also while tethers touch the spool, and sides that are

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A hub that turns freely: it spins as the membrane's tethers let it, see FreeHub."""
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 from yade import wrapper as yade
 
 
-def add(forces, bodies, spool, inertia, omega):
+def add(forces: Any, bodies: Sequence[int], spool: Any, inertia: float, omega: float) -> Any:
     """Engine of a free hub.
 
     Parameters
@@ -30,13 +33,13 @@ def add(forces, bodies, spool, inertia, omega):
     return yade.FreeHub(forces=forces, nodes=nodes, inertia=inertia, spin=omega, **facets)
 
 
-def inertia(sail, positions):
+def inertia(sail: Any, positions: np.ndarray) -> float:
     """Moment of inertia about z [kg m2] of a free hub and its membrane, nodes at (N, 3) [m]."""
     r2 = np.sum(np.asarray(positions)[:, :2] ** 2, axis=1)
     return sail.hub.inertia + float(np.sum(sail.masses() * r2))
 
 
-def release(hub, omega, forces):
+def release(hub: Any, omega: float, forces: np.ndarray) -> None:
     """Let the hub go with spin `omega` [rad/s], under `forces` (N, 3) [N] on the membrane's nodes.
 
     The leapfrog's velocities lie half a step before the positions: that of the hub, too.

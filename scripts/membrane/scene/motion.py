@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A membrane's motion: steps, the forces of a state, spin-up and release."""
 
+from collections.abc import Callable, Sequence
+from typing import Any
+
 import numpy as np
 from yade import wrapper as yade
 
 from . import hub
+from .engines import MembraneScene
 
 
-def advance(steps, resumed=None):
+def advance(steps: int, resumed: Any = None) -> None:
     """Run `steps` steps. Raises what an engine raised.
 
     `resumed`: the forces engine of a scene that was just loaded. It checks O.dt in its first step
@@ -40,14 +44,14 @@ def _first_step(forces):
         forces.forceTimeStep = forced
 
 
-def compute_forces(sail):
+def compute_forces(sail: MembraneScene) -> np.ndarray:
     """Forces (N, 3) [N] on a MembraneScene's nodes now, gravity apart: nothing moves.
 
     It takes a step of YADE in which neither integrator, rotation nor ledger takes part, nor any
     other membrane.
     """
-    kinds = yade.NewtonIntegrator, yade.KinematicEngine, yade.SpoolRotation, yade.FreeHub
-    kinds += (yade.MembraneLedger,)
+    turning = yade.KinematicEngine, yade.SpoolRotation, yade.FreeHub
+    kinds = (yade.NewtonIntegrator, *turning, yade.MembraneLedger)
     movers = []
     for engine in yade.Omega().engines:
         forces = isinstance(engine, yade.MembraneForceEngine)
@@ -69,7 +73,7 @@ def compute_forces(sail):
             engine.dead = was_dead
 
 
-def set_spin(sail, omega, before=0.5):
+def set_spin(sail: MembraneScene, omega: float, before: float = 0.5) -> None:
     """Let all nodes of a MembraneScene turn about z at `omega` [rad/s]: v = omega x r.
 
     The velocities are those of `before` steps ago [-]: the leapfrog's lie half a step before the
@@ -84,7 +88,7 @@ def set_spin(sail, omega, before=0.5):
         state.vel = (-omega * y, omega * x, 0.0)
 
 
-def residual_energy(sail, omega):
+def residual_energy(sail: MembraneScene, omega: float) -> float:
     """Kinetic energy of a MembraneScene in a frame turning at `omega` [rad/s], over the spin's [-].
 
     That of the spin is 1/2 sum m omega2 r2.
@@ -98,17 +102,17 @@ def residual_energy(sail, omega):
 
 
 def spin_up(
-    sail,
-    omega,
+    sail: MembraneScene,
+    omega: float,
     *,
-    tolerance=1e-6,
-    damping=0.3,
-    batch=2000,
-    max_time=5.0,
-    on_batch=None,
-    begun=None,
-    keep=None,
-):
+    tolerance: float = 1e-6,
+    damping: float = 0.3,
+    batch: int = 2000,
+    max_time: float = 5.0,
+    on_batch: Callable | None = None,
+    begun: dict | None = None,
+    keep: Callable | None = None,
+) -> dict:
     """Bring the sail to rest in a frame that turns at `omega` (paper, 3.3).
 
     Parameters
@@ -177,7 +181,7 @@ def spin_up(
     return {"time": steps * scene.dt, "steps": steps, "residual": residual}
 
 
-def release(sail, omega, held):
+def release(sail: MembraneScene, omega: float, held: Sequence[int]) -> None:
     """Go over to the inertial frame and let the `held` nodes go (paper, 3.3).
 
     At the release v = omega x r everywhere. The leapfrog's velocities lie half a step before, and

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The central spool: a cylinder of YADE facets about the z axis (paper, section 3.3)."""
 
+from collections.abc import Sequence
 from math import cos, hypot, pi, sin
+from typing import Any
 
 from yade import utils
 from yade.wrapper import FrictMat, Omega, SpoolRotation
@@ -11,7 +13,7 @@ COLOUR = (0.45, 0.48, 0.55)  # else YADE draws one by lot
 VERLET_DISTANCE = 2e-3  # of the collider [m]
 
 
-def turning(facets, touching, omega):
+def turning(facets: Sequence[int], touching: Sequence[int], omega: float) -> Any:
     """Engine that turns the spool.
 
     Parameters
@@ -40,7 +42,13 @@ def turning(facets, touching, omega):
     )
 
 
-def add_spool(radius=0.025, height=0.06, facets=36, young=1e6, friction_angle=0.3):
+def add_spool(
+    radius: float = 0.025,
+    height: float = 0.06,
+    facets: int = 36,
+    young: float = 1e6,
+    friction_angle: float = 0.3,
+) -> list[int]:
     """Add the spool to the scene.
 
     Parameters

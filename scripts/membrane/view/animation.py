@@ -216,7 +216,7 @@ class Stage:
 
     def _add_spool(self):
         """A cylinder about the axis, with a mark by which one sees it turn."""
-        radius, height = self.run.spool
+        radius, height = self.run.spool or (0.0, 0.0)
         body = vtkCylinderSource()
         body.SetRadius(radius)
         body.SetHeight(height)
@@ -275,7 +275,7 @@ class Stage:
 
     def _spool_extent(self, elevation):
         """Lower left and upper right (2,) [m] of the spool seen from an elevation [rad]."""
-        radius, height = self.run.spool
+        radius, height = self.run.spool or (0.0, 0.0)
         corner = np.array([radius, height / 2 * cos(elevation) + radius * sin(elevation)])
         return -corner, corner
 

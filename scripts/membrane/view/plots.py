@@ -76,7 +76,7 @@ def _draw_lines(axes, history, plot):
 
 
 def plot_shapes(
-    frames: ArrayLike, mesh: SailMesh, path: Path | str, times: Sequence[float]
+    frames: ArrayLike, mesh: SailMesh, path: Path | str, times: Sequence[float] | np.ndarray
 ) -> None:
     """Views of the sail at up to six times, all from the same camera and at the same scale.
 
@@ -99,7 +99,7 @@ def plot_sheets(
     triangles: np.ndarray,
     marked: np.ndarray,
     path: Path | str,
-    times: Sequence[float],
+    times: Sequence[float] | np.ndarray,
 ) -> None:
     """Views of any sheet at up to six times, all from the same camera and at the same scale.
 

@@ -35,6 +35,7 @@ class Blades:
     refine: int = parameter(2, "-", RUN, "cells of a pleat along the blade", least=1, most=100)
 
 
+@dataclass(frozen=True)
 @with_defaults(
     omega=changed(6 * pi, source=ASSUMED, text="spin rate of the hub"),
     beta=3.0,
@@ -47,7 +48,9 @@ class HeliogyroParameters(RunParameters, Blades, sail="heliogyro"):
     """Film and creases are the paper's; in space."""
 
 
-def blade(p):
+def blade(
+    p: HeliogyroParameters,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """One blade along +x: nodes (N, 3) [m], its start (N, 3) [m], triangles and fold lines.
 
     Rows of nodes run along the blade; every `refine` columns there is a fold line.
@@ -67,7 +70,7 @@ def blade(p):
     return nodes, start, triangles, np.array(sides, dtype=int).reshape(-1, 2), signs
 
 
-class Heliogyro(Kind):
+class Heliogyro(Kind[HeliogyroParameters]):
     """See the module."""
 
     title = "a heliogyro, whose pleated blades the spin pulls out"
@@ -93,7 +96,7 @@ class Heliogyro(Kind):
         )
         roots = np.concatenate([np.arange(0, size, columns) + n for n in first])
         starts = np.concatenate([start @ turn.T for turn in turns])
-        return Sail(mesh, starts, mesh.groups["tips"], hub=roots)
+        return Sail(mesh, starts, mesh.groups["tips"], p.tip_mass, hub=roots)
 
     def draw(self, run: FinishedSail) -> None:
         """history.png, and shapes.png up to the widest shape."""

@@ -18,7 +18,7 @@ that spin, and must end at 2.5 rpm; with `--spin 2.5` it ends at 1.1 rpm.
 
 from dataclasses import dataclass
 from math import cos, radians, sin
-from typing import Any
+from typing import Any, ClassVar
 
 from matplotlib.figure import Figure
 
@@ -54,6 +54,7 @@ class Flight:
     )
 
 
+@dataclass(frozen=True)
 @with_defaults(
     omega=changed(FLIGHT_SPIN / RPM.factor, text="spin in which the folded sail comes to rest"),
     outer_width=14.0,
@@ -87,11 +88,11 @@ class IkarosParameters(SailParameters, Flight, sail="ikaros"):
         super().__post_init__()
 
 
-class Ikaros(Square):
+class Ikaros(Square[IkarosParameters]):
     """See the module."""
 
     title = "the flight sail IKAROS, stage 2, on a hub that turns freely"
-    parameters = IkarosParameters
+    parameters: ClassVar = IkarosParameters
     told = "hub_spin"
 
     def equip(self, sail: Sail, built: Any, p: IkarosParameters) -> None:

@@ -6,6 +6,7 @@ the drag, and turns the slower the wider it is open.
 """
 
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
 from ...parameters import with_defaults
@@ -23,6 +24,7 @@ def _pattern():
     return str(next((file for file in files if file.exists()), files[0]))
 
 
+@dataclass(frozen=True)
 @with_defaults(
     file=_pattern(),
     size=0.019,

@@ -5,6 +5,7 @@ It starts turning as a whole; it flies free, or its hub is driven. Its centre of
 spin axis.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -61,6 +62,7 @@ class Sheet:
 
 
 # The law of creases as printed is no gradient where triangles at a crease are not equally high.
+@dataclass(frozen=True)
 @with_defaults(
     omega=changed(6 * np.pi, source=SPIN, text="spin rate at the start", above=False),
     gravity=changed(0.0, source=SPIN),
@@ -73,7 +75,7 @@ class PatternParameters(RunParameters, Sheet, sail="sheet"):
     """Parameters of a sail from a file; those with names as in SailParameters mean the same."""
 
 
-class AnySheet(Kind):
+class AnySheet(Kind[PatternParameters]):
     """See the module."""
 
     title = "a crease pattern (.fold) or a mesh of gmsh (.msh)"
@@ -106,7 +108,7 @@ class AnySheet(Kind):
         mesh = run.sail.mesh
         plots.plot_sheets(frames, mesh.triangles, mesh.tips, run.folder / "shapes.png", times)
 
-    def instants(self, run: FinishedSail) -> np.ndarray:
+    def instants(self, run: FinishedSail) -> Sequence[float] | np.ndarray:
         """When shapes are shown [s]."""
         areas = [area_vectors(x, run.sail.mesh.triangles)[:, 2].sum() for x in run.frames]
         widest = int(np.argmax(areas))
@@ -118,7 +120,7 @@ class AnySheet(Kind):
         mesh, p = run.sail.mesh, run.parameters
         custom = {
             "membrane:material": attributes("MembraneMat", p),
-            "vertices_membrane:pointMass": tip_masses(mesh, p.tip_mass).tolist(),
+            "vertices_membrane:pointMass": tip_masses(mesh, run.sail.tip_mass).tolist(),
             "vertices_membrane:mass": run.built.masses().tolist(),
         }
         write_series(run.folder / "sail.fold", mesh, run.times.tolist(), run.frames, custom)
@@ -140,8 +142,8 @@ def sail_of(sheet: Any, p: PatternParameters) -> Sail:
     if p.hub_inertia and not len(placed.hub):
         raise ValueError(f"hub_inertia = {p.hub_inertia} kg m2: the sheet has no hub")
     words = f"{p.file}: {described(sheet, placed)}"
-    about = {"hub": placed.hub, "doubts": doubts(sheet), "words": words}
-    return Sail(placed, placed.start, placed.tips, **about)
+    about: dict = {"hub": placed.hub, "doubts": doubts(sheet), "words": words}
+    return Sail(placed, placed.start, placed.tips, p.tip_mass, **about)
 
 
 def read_sheet(p: PatternParameters) -> Any:

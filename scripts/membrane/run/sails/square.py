@@ -2,6 +2,7 @@
 """The paper's sail: a square of four petals, folded to a cross, on tethers about a spool."""
 
 from dataclasses import asdict
+from typing import ClassVar, TypeVar
 
 import numpy as np
 
@@ -13,16 +14,19 @@ from ...view import plots
 from ..kind import FinishedSail, Kind, Sail
 
 
-class Square(Kind):
+P = TypeVar("P", bound=SailParameters)
+
+
+class Square(Kind[P]):
     """See the module."""
 
     title = "the paper's square sail, folded to a cross"
-    parameters = SailParameters
+    parameters: ClassVar = SailParameters
     measures = SQUARE
     outcomes = SQUARE_OUTCOMES
     told = "deployment_rate"
 
-    def sail(self, p: SailParameters) -> Sail:
+    def sail(self, p: P) -> Sail:
         """Guides hold the middles of the petals, and the spool the tethers' ends."""
         mesh = mesh_of(p)
         start = fold(mesh, p.bar_radius, p.arm_radius, p.layer_gap)
@@ -30,6 +34,7 @@ class Square(Kind):
             mesh,
             start,
             mesh.tips,
+            p.tip_mass,
             mesh.cables,
             hub=mesh.anchors,
             touching=np.setdiff1d(mesh.tether_nodes, mesh.anchors),
@@ -46,4 +51,4 @@ class Square(Kind):
         plots.plot_shapes(frames, run.sail.mesh, run.folder / "shapes.png", times)
 
 
-KIND = Square()
+KIND: Kind = Square()

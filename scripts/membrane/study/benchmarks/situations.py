@@ -22,8 +22,8 @@ from .sheet import square_sheet
 
 STILL = 1e-12  # [s]; a step in which nothing moves
 SHARE = 0.5  # of the critical time step
-DAMPING = {"zeta": 0.02}
-EVERYTHING = {**DAMPING, "beta": 30.0, "air_density": 1.2e-3}
+DAMPING: dict = {"zeta": 0.02}
+EVERYTHING: dict = {**DAMPING, "beta": 30.0, "air_density": 1.2e-3}
 
 Measuring = Callable[[int], dict[str, float]]  # a function of a number of steps
 
@@ -83,11 +83,11 @@ def sheet(side: int, path: str, everything: bool, exchange_period: int = 1) -> M
     """
     before, plan = resident()[0], square_sheet(side)
     start = time.process_time()
-    folds = (plan.creases, plan.crease_signs) if everything else ()
+    folds: dict = {"creases": plan.creases, "crease_signs": plan.crease_signs}
     membrane = scene.add_membrane(
         plan.nodes,
         plan.triangles,
-        *folds,
+        **(folds if everything else {}),
         positions=plan.places,
         interactions=path == "law2",
     )

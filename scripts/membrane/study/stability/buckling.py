@@ -33,8 +33,7 @@ def early_deployment(alpha: float, step: float, seconds: float) -> tuple[float, 
     p = SailParameters(alpha=alpha, alpha_crease=alpha)
     sail, built = driver.build(p)
     estimate = built.forces.criticalTimeStep()
-    O.dt = step
-    scene.release(built, p.omega, sail.held)
+    driver.release(sail, built, p.omega, step)
     largest, error = 0.0, 0.0
     try:
         for _ in range(10):

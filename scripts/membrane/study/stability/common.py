@@ -49,7 +49,7 @@ class Model:
         O.reset()
         self.rest = np.array(nodes, dtype=float)
         self.net = scene.add_membrane(self.rest, triangles, **options)
-        about = {"force_time_step": True, "energy_tolerance": 0, **(engine or {})}
+        about: dict = {"force_time_step": True, "energy_tolerance": 0, **(engine or {})}
         built = scene.set_engines(self.net, scene.SceneParameters(gravity=gravity, **about))
         self.sail, self.forces, self.ledger = built, built.forces, built.ledger
         self.ledger.dead = True

@@ -230,8 +230,8 @@ def sail_run(
     beta, zeta, refine = case
     start = SailParameters(refine=refine)
     p = replace(start, beta=beta, zeta=zeta)
-    mesh, built = begin(p, equilibrium(start), ledger=False)
-    creases = CreaseForces(mesh, built, beta, lengths)
+    sail, built = begin(p, equilibrium(start), ledger=False)
+    creases = CreaseForces(sail.mesh, built, beta, lengths)
     if lengths == "plugin":
         return watched(built, creases, seconds, row)
     with creases_by_hand(built, creases):
