@@ -44,6 +44,8 @@ In the folder of the sources also:
   parts [options]           what each part of the model changes and costs, into reference/parts.csv
   chart [options]           accuracy against time for every path, step and mesh, into
                             reference/chart.csv and chart.png
+  docs [--table]            make the HTML site build/docs, and the guide's table of parameters;
+                            --table: only that
   viewer                    bundle the viewer of report.html, which npm's registry holds parts of
   sanitize                  the C++ tests under address and undefined-behaviour sanitizers, and the
                             threads under a race check
@@ -77,6 +79,7 @@ sweep_packages=(python3-jinja2)
 workflow_packages=(snakemake)
 calibrate_packages=(python3-scipy)
 slurm_packages=(slurmctld slurmd slurm-client munge) # for a test
+docs_packages=(python3-sphinx python3-myst-parser furo libjs-mathjax)
 format_packages=(clang-format black python3-flake8 shellcheck)
 
 no_display=(-n) # how YADE is told to do without
@@ -462,6 +465,13 @@ case)
 disk | stability | parts | chart)
     compile
     run_yade "$root/scripts/$command.py" "$@"
+    ;;
+docs)
+    if [[ $* == --table ]]; then PYTHONPATH=$root/scripts exec python3 "$root/reference/guide/site.py" --table; fi
+    take_nothing "$@"
+    need "${docs_packages[@]}" "${sail_packages[@]}" "${sweep_packages[@]}" "${calibrate_packages[@]}"
+    compile
+    run_yade "$root/reference/guide/site.py"
     ;;
 viewer)
     take_nothing "$@"

@@ -2,7 +2,7 @@
 """How Sphinx makes the HTML site; site.py runs it."""
 
 import re
-import sys
+from inspect import cleandoc
 
 from docutils import nodes
 from docutils.parsers.rst import roles
@@ -14,12 +14,16 @@ extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphin
 exclude_patterns = ["pkg/membrane/[!y]*", "scripts", "tests"]
 html_theme = "furo"
 html_title = "Membranes in YADE"
-mathjax_path = "mathjax/MathJax.js?config=TeX-MML-AM_CHTML"
-html_static_path = ["mathjax"]
+mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_CHTML-full"  # which site.py copies
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3
-autodoc_default_options = {"members": True, "member-order": "bysource"}
-autodoc_mock_imports = []
+myst_update_mathjax = False  # it means a later MathJax than Debian's
+autodoc_default_options = {
+    "members": True,
+    "member-order": "bysource",
+    "exclude-members": "updateAttrs",  # of every class of YADE
+}
+suppress_warnings = ["ref.python"]  # classes of one name in two modules
 pygments_style = "friendly"
 
 # Pages that are in no table of contents of their own, in order, by the page that leads to them.
@@ -43,10 +47,23 @@ def read(app, name, source):
 
 def explain(app, what, name, thing, options, lines):
     """Docstrings of the plugin's classes are written for YADE's manual."""
-    text = "\n".join(lines)
-    text = re.sub(r":ydefault:`(.*?)` :yattrtype:`(.*?)` :yattrflags:`.*?`", r"(\2, default \1)", text)
+    # Of a property napoleon would take what precedes a colon for its type.
+    text = cleandoc(thing.__doc__) if isinstance(thing, property) else "\n".join(lines)
+    text = re.sub(
+        r":ydefault:`(.*?)` :yattrtype:`(.*?)` :yattrflags:`.*?`", r"(\2, default \1)", text
+    )
     text = re.sub(r"\((.*?), default \)", r"(\1)", text)
     lines[:] = text.split("\n")
+
+
+def sign(app, what, name, thing, options, signature, returned):
+    """Signatures as Boost.Python has them, (Class)arg1 [, (int)count=1], become Python's."""
+    if not signature or "(object)" not in signature and ")arg1" not in signature:
+        return None
+    words, optional = re.subn(r" ?\[(?=, \(|\()", "", signature)
+    words = words.removesuffix(optional * "]" + ")") + ")"
+    words = re.sub(r"\((object|[A-Z]\w*)\)arg1(, )?", "", words)
+    return re.sub(r"\(\w+\)", "", words), (returned or "").rstrip(" :") or None
 
 
 def yref(name, rawtext, text, lineno, inliner, options={}, content=[]):
@@ -58,4 +75,5 @@ def setup(app):
     """What Sphinx calls."""
     roles.register_local_role("yref", yref)
     app.connect("source-read", read)
-    app.connect("autodoc-process-docstring", explain)
+    app.connect("autodoc-process-docstring", explain, priority=600)  # after napoleon
+    app.connect("autodoc-process-signature", sign)

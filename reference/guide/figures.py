@@ -173,14 +173,14 @@ def draw_leapfrog(axes):
     dashed = {"linestyle": (0, (4, 2)), "width": 1.2}
     arrow(axes, (at(-1.5) + edge, speeds), (at(-0.5) - edge, speeds), AMBER, "-", **dashed)
     arrow(axes, (at(-0.5) + edge, speeds), (at(0) - edge, speeds), AMBER, **dashed)
-    words = (
-        r"$\mathbf{v}_n=\frac{3}{2}\,\mathbf{v}_{n-\frac{1}{2}}-\frac{1}{2}\,\mathbf{v}_{n-\frac{3}{2}}$"
-    )
+    words = r"$\mathbf{v}_n=\frac{3}{2}\,\mathbf{v}_{n-\frac{1}{2}}-\frac{1}{2}\,\mathbf{v}_{n-\frac{3}{2}}$"
     text(axes, at(-1), speeds + 0.25, words, 11.5, AMBER)
     arrow(axes, (at(0), speeds + edge), (at(0), forces - 0.23), AMBER)
     text(axes, at(0) - 0.08, (speeds + forces) / 2, "damping, drag", 8.5, AMBER, ha="right")
     arrow(axes, (at(0), places - edge), (at(0), forces + 0.23), RED)
-    text(axes, at(0) - 0.08, (places + forces) / 2, "sides, creases, contacts", 8.5, RED, ha="right")
+    text(
+        axes, at(0) - 0.08, (places + forces) / 2, "sides, creases, contacts", 8.5, RED, ha="right"
+    )
     arrow(axes, (at(0) + 0.2, forces - 0.06), (at(0.5) - 0.14, speeds + edge + 0.03), BLUE)
     below = {"connectionstyle": "arc3,rad=0.28", "width": 1.3}
     arrow(axes, (at(-0.5) + 0.05, speeds - edge), (at(0.5) - 0.05, speeds - edge), BLUE, **below)

@@ -5,8 +5,8 @@ It also writes the table of parameters into parameters.md; with --table it does 
 neither YADE nor Sphinx.
 """
 
-import importlib
 import pkgutil
+import shutil
 import sys
 from dataclasses import fields
 from pathlib import Path
@@ -20,6 +20,13 @@ SITE = ROOT / "build" / "docs"
 PAGE = HERE / "parameters.md"
 BEGIN, END = "<!-- parameters -->\n", "<!-- end -->"
 ROOMS = ("ground", "mesh", "scene", "results", "view", "run", "study")
+PROGRAMS = ("membrane.study.benchmarks.worker",)  # run when they are imported
+MATHJAX = Path("/usr/share/javascript/mathjax")  # of which formulas need these files
+FORMULAS = (
+    *("MathJax.js", "config/TeX-AMS_CHTML-full.js", "extensions", "fonts/HTML-CSS/TeX/woff"),
+    *("jax/element", "jax/input/TeX", "jax/output/CommonHTML"),
+)
+GO_ON = '<meta charset="utf-8"><meta http-equiv="refresh" content="0; url=README.html">\n'
 
 
 def table():
@@ -46,9 +53,8 @@ def modules():
     found = {room: [] for room in ROOMS}
     for module in pkgutil.walk_packages(membrane.__path__, "membrane."):
         room = module.name.split(".")[1]
-        in_room = room if room in found else "ground"
-        if "._" not in module.name and room != "cli" and "." not in room:
-            found[in_room].append(module.name)
+        if "._" not in module.name and room != "cli" and module.name not in PROGRAMS:
+            found[room if room in found else "ground"].append(module.name)
     return found
 
 
@@ -57,8 +63,9 @@ def write_api(folder):
     folder.mkdir(parents=True, exist_ok=True)
     pages = {"plugin": [("class", f"membrane.{name}") for name in membrane.__all__]}
     pages |= {room: [("module", name) for name in names] for room, names in modules().items()}
+    titles = {"plugin": "The plugin's classes", "ground": "The ground"}
     for page, things in pages.items():
-        title = "The plugin's classes" if page == "plugin" else f"membrane.{page}"
+        title = titles.get(page, f"membrane.{page}")
         text = [title, "=" * len(title)]
         for kind, name in things:
             text += ["", name, "-" * len(name), "", f".. auto{kind}:: {name}"]
@@ -82,8 +89,17 @@ def main():
         if not link.is_symlink():
             link.symlink_to(ROOT / name)
     write_api(source / "api")
-    status = build_main(["-q", "-W", "--keep-going", "-c", str(HERE), str(source), str(SITE)])
-    return status
+    if status := build_main(["-qW", "--keep-going", "-c", str(HERE), str(source), str(SITE)]):
+        return status
+    for name in FORMULAS:
+        copy = shutil.copytree if (MATHJAX / name).is_dir() else shutil.copy
+        target = SITE / "_static" / "mathjax" / name
+        if not target.exists():
+            target.parent.mkdir(parents=True, exist_ok=True)
+            copy(MATHJAX / name, target)
+    (SITE / "index.html").write_text(GO_ON, encoding="utf-8")
+    print(f"made {SITE / 'index.html'}")
+    return 0
 
 
 sys.exit(main())
