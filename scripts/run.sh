@@ -467,11 +467,11 @@ disk | stability | parts | chart)
     run_yade "$root/scripts/$command.py" "$@"
     ;;
 docs)
-    if [[ $* == --table ]]; then PYTHONPATH=$root/scripts exec python3 "$root/reference/guide/site.py" --table; fi
+    if [[ $* == --table ]]; then PYTHONPATH=$root/scripts exec python3 "$root/reference/guide/make_site.py" --table; fi
     take_nothing "$@"
     need "${docs_packages[@]}" "${sail_packages[@]}" "${sweep_packages[@]}" "${calibrate_packages[@]}"
     compile
-    run_yade "$root/reference/guide/site.py"
+    run_yade "$root/reference/guide/make_site.py"
     ;;
 viewer)
     take_nothing "$@"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How Sphinx makes the HTML site; site.py runs it."""
+"""How Sphinx makes the HTML site; make_site.py runs it."""
 
 import re
 from inspect import cleandoc
@@ -14,7 +14,7 @@ extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphin
 exclude_patterns = ["pkg/membrane/[!y]*", "scripts", "tests"]
 html_theme = "furo"
 html_title = "Membranes in YADE"
-mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_CHTML-full"  # which site.py copies
+mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_CHTML-full"  # which make_site.py copies
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3
 myst_update_mathjax = False  # it means a later MathJax than Debian's

@@ -1,21 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Draws the guide's figures beside this file: `/usr/bin/python3 reference/guide/figures.py [FOLDER]`."""
+"""Draws the guide's figures: `/usr/bin/python3 reference/guide/figures.py`."""
 
-import sys
 from pathlib import Path
 
-import matplotlib
+import numpy as np
+from matplotlib import rcParams
+from matplotlib.figure import Figure
+from matplotlib.patches import FancyArrowPatch, FancyBboxPatch, Polygon
 
-matplotlib.use("Agg")
-import numpy as np  # noqa: E402
-from matplotlib import pyplot as plt  # noqa: E402
-from matplotlib.patches import Arc, FancyArrowPatch, FancyBboxPatch, Polygon  # noqa: E402
-
-INK, SOFT, FILM = "#22303c", "#7b8794", "#e8edf2"
+INK, SOFT = "#22303c", "#7b8794"
 BLUE, RED, GREEN, AMBER = "#2f6db3", "#c0392b", "#3a8a5f", "#b9770e"
 TINTS = {BLUE: "#e3eefa", RED: "#fbe9e7", GREEN: "#e4f3ea", AMBER: "#fbf1de", SOFT: "#f1f3f5"}
 
-plt.rcParams.update(
+rcParams.update(
     {
         "font.family": "DejaVu Sans",
         "mathtext.fontset": "stix",
@@ -28,7 +25,7 @@ plt.rcParams.update(
 
 def canvas(width, height, low=0.0):
     """Axes without frame in which a unit is an inch; the lower left corner is at (0, `low`)."""
-    figure = plt.figure(figsize=(width, height))
+    figure = Figure(figsize=(width, height))
     axes = figure.add_axes((0, 0, 1, 1), xlim=(0, width), ylim=(low, low + height), aspect="equal")
     axes.axis("off")
     return axes
@@ -173,7 +170,8 @@ def draw_leapfrog(axes):
     dashed = {"linestyle": (0, (4, 2)), "width": 1.2}
     arrow(axes, (at(-1.5) + edge, speeds), (at(-0.5) - edge, speeds), AMBER, "-", **dashed)
     arrow(axes, (at(-0.5) + edge, speeds), (at(0) - edge, speeds), AMBER, **dashed)
-    words = r"$\mathbf{v}_n=\frac{3}{2}\,\mathbf{v}_{n-\frac{1}{2}}-\frac{1}{2}\,\mathbf{v}_{n-\frac{3}{2}}$"
+    words = r"$\mathbf{v}_n=\frac{3}{2}\,\mathbf{v}_{n-\frac{1}{2}}"
+    words += r"-\frac{1}{2}\,\mathbf{v}_{n-\frac{3}{2}}$"
     text(axes, at(-1), speeds + 0.25, words, 11.5, AMBER)
     arrow(axes, (at(0), speeds + edge), (at(0), forces - 0.23), AMBER)
     text(axes, at(0) - 0.08, (speeds + forces) / 2, "damping, drag", 8.5, AMBER, ha="right")
@@ -216,7 +214,8 @@ def draw_engines(axes):
             GREEN,
             "NewtonIntegrator: all nodes, other bodies",
             "MembraneIntegrator: nodes, but for those below",
-            "NewtonIntegrator: other bodies that move, if any,\nand nodes that can touch or are held",
+            "NewtonIntegrator: other bodies that move, if any,\n"
+            "and nodes that can touch or are held",
         ),
         ("", GREEN, "FreeHub, if any: the hub and the nodes on it"),
         ("check", BLUE, "MembraneLedger: energies and works; MembraneWatch: stops a run"),
@@ -370,17 +369,11 @@ def draw_ends(axes):
         text(axes, 2.45 + 1.45 * k, 0.13, words, 8.5, SOFT)
 
 
-FIGURES = {"parts": parts, "step": step, "crease": crease}
-
-
 def main():
-    """Write all figures into a folder, by default that of this file; as PNG if told so."""
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent
-    for name, draw in FIGURES.items():
-        figure = draw()
-        figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
-        if len(sys.argv) > 2:
-            figure.savefig(folder / f"{name}.png", dpi=110)
+    """Write all figures beside this file."""
+    for draw in (parts, step, crease):
+        file = Path(__file__).resolve().with_name(f"{draw.__name__}.svg")
+        draw().savefig(file, metadata={"Date": None})
 
 
 if __name__ == "__main__":

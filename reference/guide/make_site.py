@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Makes the HTML site build/docs, in YADE: `yade -n -x reference/guide/site.py`.
+"""Makes the HTML site build/docs, in YADE: `yade -n -x reference/guide/make_site.py`.
 
 It also writes the table of parameters into parameters.md; with --table it does only that, and needs
 neither YADE nor Sphinx.
