@@ -19,7 +19,7 @@ def check(native, wrapper):
         for name, value in wrote.items():
             if seen[name] != value:
                 raise ImportError(
-                    f"membrane: this YADE lays out its classes otherwise than Debian's: "
+                    f"membrane: this YADE lays out its classes differently from Debian's: "
                     f"{cls}.{name} was set to {value} but reads as {seen[name]}"
                 )
 

@@ -123,7 +123,7 @@ def cut_quadrangles(nodes, quadrangles):
     if np.any(np.all(outside, axis=0)):
         q = int(np.argmax(np.all(outside, axis=0)))
         middle = nodes[quadrangles[q]].mean(axis=0).tolist()
-        raise ValueError(f"the sides of the quadrangle round {middle} m cross")
+        raise ValueError(f"the sides of the quadrangle around {middle} m cross")
     best = np.where(worst[1] < worst[0] - EVEN, 1, 0)
     return ways[best, np.arange(len(best))].reshape(-1, 3)
 

@@ -52,7 +52,7 @@ def plain_errors(command, stopped="stopped by Ctrl-C"):
         by_hand = f"apt-get install python3-{DEBIAN.get(package, package)}"
         sys.exit(f"{command}: {error}; scripts/run.sh {command} installs it, or by hand: {by_hand}")
     except BrokenPipeError:
-        sys.exit(f"{command}: nobody reads what it prints any more")
+        sys.exit(f"{command}: its output is no longer read")
     except (ImportError, ValueError, RuntimeError, OSError) as error:
         if os.environ.get(DEBUG, "0") not in ("", "0"):
             traceback.print_exc()
@@ -60,7 +60,7 @@ def plain_errors(command, stopped="stopped by Ctrl-C"):
     except Exception:
         traceback.print_exc()
         sys.exit(
-            f"{command}: this is a fault of the program, not of what it was given; please report "
+            f"{command}: this is a bug in the program, not in its input; please report "
             "it with the lines above, the command and its files"
         )
     finally:

@@ -179,6 +179,6 @@ def from_arguments(arguments, overrides=None, kind=SailParameters):
     for name, value in (overrides or {}).items():
         if name not in values:
             known = ", ".join(sorted(values))
-            raise ValueError(f"{name} is no parameter of the sail; known are {known}")
+            raise ValueError(f"{name} is not a parameter of the sail; it has {known}")
         values[name] = value
     return kind(**values)

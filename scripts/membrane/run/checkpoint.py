@@ -108,7 +108,7 @@ def _whole_state(folder):
             if content["yade"] == _this_yade():
                 return content["state"]
             there, here = content["yade"], _this_yade()
-            print(f"{folder} was saved by YADE {there}; this is {here}, which cannot go on from it")
+            print(f"{folder} was saved by YADE {there}; this is {here}, which cannot continue it")
     except (OSError, ValueError, KeyError):
         pass
     return None

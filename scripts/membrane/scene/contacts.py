@@ -36,13 +36,13 @@ def check(bodies, integrated):
         kinds = tuple(getattr(yade, name) for name in SHAPES)
         if body.bounded and body.shape is not None and not isinstance(body.shape, kinds):
             raise ValueError(
-                f"{about} is a {type(body.shape).__name__}, which nodes cannot touch; they can a "
-                f"{', '.join(SHAPES)}; if nothing should touch it, set its bounded to False"
+                f"{about} is a {type(body.shape).__name__}, which nodes cannot touch; they can "
+                f"touch a {', '.join(SHAPES)}; if nothing should touch it, set its bounded to False"
             )
         if body.bounded and not isinstance(body.mat, yade.FrictMat):
             raise ValueError(
                 f"{about} has the material {type(body.mat).__name__}; it must have a FrictMat, "
-                "or its bounded be False"
+                "or bounded=False"
             )
         if body.bounded and not body.mask & (integrated | spool.SPOOL_MASK):
             raise ValueError(f"{about} has the mask {body.mask}, with which it touches nothing")

@@ -172,7 +172,7 @@ def _check_touching(membrane, touching, others):
     strangers = set(touching).difference(membrane.bodyIds)
     if strangers:
         raise ValueError(
-            f"set_engines: touching: body #{min(strangers)} is no node of the membrane"
+            f"set_engines: touching: body #{min(strangers)} is not a node of the membrane"
         )
     untouched = [i for i in others if yade.Omega().bodies[i].bounded]
     if untouched and not touching:

@@ -42,7 +42,7 @@ class Flight:
     """What the flight sail has beside the paper's."""
 
     spin: float = parameter(
-        0.0, "rpm", SPIN, "before stage 2; 0: that with the angular momentum of the flight"
+        0.0, "rpm", SPIN, "spin before stage 2; 0: what gives the flight's angular momentum"
     )
     sun: float = parameter(
         -1.0,
