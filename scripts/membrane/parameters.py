@@ -68,7 +68,7 @@ def number(word):
 
 
 def whole(word):
-    """A whole number from a word: 36, 36.0 and 1e3 are such."""
+    """A whole number from a word such as 36, 36.0 or 1e3."""
     try:
         value = int(word)
     except ValueError:  # it has a point, an exponent, too many digits, or is none
@@ -327,7 +327,7 @@ def with_defaults(**values):
 
 
 def _fields_of(kind):
-    """Fields of a class, () if it is no dataclass."""
+    """Fields of a class, () if it is not a dataclass."""
     return fields(kind) if is_dataclass(kind) else ()
 
 
@@ -396,7 +396,7 @@ class SailParameters(RunParameters, SpinUp, Tethers, Spool, SquareSail, sail="sq
 def check(parameters):
     """Raise ValueError naming the first of some parameters that is out of range.
 
-    Others get the type that is theirs: 36.0 becomes 36, and 3 becomes 3.0, as may be.
+    The others get their type: 36.0 becomes 36, or 3 becomes 3.0.
     """
     for item in fields(parameters):
         value = getattr(parameters, item.name)

@@ -35,7 +35,7 @@ def batch_row(kind):
     Raises
     ------
     ValueError
-        If the table has a column that nobody knows, or the row a value that cannot be read.
+        If the table has an unknown column, or the row a value that cannot be read.
     """
     file, line = _place()
     if not file:

@@ -18,7 +18,7 @@ DEBIAN = {"vtkmodules": "vtk9"}  # packages whose names in Python and in Debian 
 def plain_errors(command, stopped="stopped by Ctrl-C"):
     """End the program with one sentence where what is inside raises an error that is foreseen.
 
-    What a command imports beside the standard library belongs inside, too: a package may be
+    What a command imports besides the standard library belongs inside, too: a package may be
     missing. With MEMBRANE_DEBUG=1 it shows the traceback, too. Other errors are faults of the
     program: a traceback, and what to do with it.
 

@@ -71,7 +71,7 @@ class Checkpoints:
     def load(self, is_whole=lambda state: True):
         """Load the scene of the newest one that is whole; returns its state, None if there is none.
 
-        Others are thrown away: the run goes on from an older one, or begins afresh. So are those
+        Others are thrown away: the run continues from an older one, or starts afresh. So are those
         of another YADE, whose classes have other attributes.
 
         Parameters

@@ -20,7 +20,7 @@ def check(bodies, integrated):
     Parameters
     ----------
     bodies : sequence of int
-        Ids of bodies that are no nodes.
+        Ids of bodies that are not nodes.
     integrated : int
         Mask of NewtonIntegrator.
 

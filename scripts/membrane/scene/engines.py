@@ -116,7 +116,7 @@ def set_engines(membrane, parameters=SceneParameters(), *, driven=(), touching=(
     Raises
     ------
     ValueError
-        Naming the body that is no node, or could not be touched.
+        Naming the body that is not a node, or could not be touched.
     """
     p, scene = parameters, yade.Omega()
     others = []
@@ -168,7 +168,7 @@ def set_engines(membrane, parameters=SceneParameters(), *, driven=(), touching=(
 
 
 def _check_touching(membrane, touching, others):
-    """Refuse bodies that are no nodes; tell of `others` that nothing would touch."""
+    """Refuse bodies that are not nodes; warn of `others` that nothing would touch."""
     strangers = set(touching).difference(membrane.bodyIds)
     if strangers:
         raise ValueError(
@@ -230,7 +230,7 @@ def _interaction_loop(membrane, fused, touching):
 def renew_collider():
     """Put a new collider in the place of the one that `set_engines` made, if any.
 
-    It counts how often it was loaded, so that else two saves of one state would differ.
+    It counts how often it was loaded: otherwise two saves of the same state would differ.
     """
     omega = yade.Omega()
     old = yade.InsertionSortCollider

@@ -2,7 +2,7 @@
 """A heliogyro: long blades, pleated along their length, that the spin pulls out of a hub.
 
 Blade k points away from the axis at an angle of 2 pi k / blades, flat in the spin plane. It is
-pleated like an accordion: its fold lines lie across it, mountains and valleys by turns, and the
+pleated like an accordion: its fold lines lie across it, mountains and valleys in turn, and the
 pleats stand on edge, so that it is as long as their projection. Its root turns with the hub.
 """
 
