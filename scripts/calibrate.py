@@ -3,4 +3,4 @@
 
 from membrane.cli import run
 
-run("calibrate", "stopped by Ctrl-C; called again it goes on")
+run("calibrate", "stopped by Ctrl-C; run it again to continue")

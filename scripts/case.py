@@ -3,4 +3,4 @@
 
 from membrane.cli import run
 
-run("case", "stopped by Ctrl-C; run again it goes on")
+run("case", "stopped by Ctrl-C; run it again to continue")

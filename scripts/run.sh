@@ -45,6 +45,8 @@ In the folder of the sources also:
   parts [options]           what each part of the model changes and costs, into reference/parts.csv
   chart [options]           accuracy against time for every path, step and mesh, into
                             reference/chart.csv and chart.png
+  docs [--table]            make the HTML site build/docs, and the guide's table of parameters;
+                            --table: only that
   viewer                    bundle the viewer of report.html, which npm's registry holds parts of
   tidy                      hold the C++ sources against clang-tidy, as .clang-tidy has it
   sanitize                  the C++ tests under address and undefined-behaviour sanitizers, and the
@@ -81,6 +83,7 @@ workflow_packages=(snakemake)
 calibrate_packages=(python3-scipy)
 slurm_packages=(slurmctld slurmd slurm-client munge) # for a test
 coverage_packages=(python3-coverage)
+docs_packages=(python3-sphinx python3-myst-parser furo libjs-mathjax)
 format_packages=(clang-format black python3-flake8 mypy python3-numpy shellcheck) # numpy: its types
 
 no_display=(-n)   # how YADE is told to do without
@@ -518,6 +521,13 @@ case)
 disk | stability | parts | chart)
     compile
     run_yade "$root/scripts/$command.py" "$@"
+    ;;
+docs)
+    if [[ $* == --table ]]; then PYTHONPATH=$root/scripts exec python3 "$root/reference/guide/make_site.py" --table; fi
+    take_nothing "$@"
+    need "${docs_packages[@]}" "${sail_packages[@]}" "${sweep_packages[@]}" "${calibrate_packages[@]}"
+    compile
+    run_yade "$root/reference/guide/make_site.py"
     ;;
 viewer)
     take_nothing "$@"

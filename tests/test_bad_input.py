@@ -77,7 +77,7 @@ class TestMesh(Refusals):
         )
 
     def test_crease_that_is_no_side(self):
-        self.mesh_refused({"creases": [(2, 3)]}, "creases[0] = (2 3)", "no side of any triangle")
+        self.mesh_refused({"creases": [(2, 3)]}, "creases[0] = (2 3)", "not a side of any triangle")
 
     def test_crease_on_the_edge(self):
         self.mesh_refused({"creases": [(0, 2)]}, "creases[0] = (0 2)", "edge", "2 triangles")

@@ -151,7 +151,7 @@ class TestSides(ChangeTest):
     def test_no_interactions_at_all(self):
         self.law2()
         O.interactions.clear()
-        self.refused(r"side 0-1 \(bodies #0 and #1\) is no interaction of a MembranePhys")
+        self.refused(r"side 0-1 \(bodies #0 and #1\) has no interaction with a MembranePhys")
 
     def test_one_interaction_erased(self):
         made = self.law2()

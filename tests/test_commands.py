@@ -306,7 +306,7 @@ class TestErrors(unittest.TestCase):
     def test_a_fault_of_the_program_is_a_traceback_and_a_word(self):
         said, end = self.ends(KeyError("sides"))
         self.assertRegex(said, r"Traceback (?s:.*)KeyError: 'sides'")
-        self.assertRegex(end, "^fold: this is a fault of the program.* please report it")
+        self.assertRegex(end, "^fold: this is a bug in the program.* please report it")
 
 
 class TestReadOnlyBuild(BadDayTest):
@@ -339,7 +339,7 @@ class TestOutput(BadDayTest):
         halt.lift()
         process.stdout.close()
         os.kill(stopped, signal.SIGCONT)
-        self.ends(process, 1, "^deploy: nobody reads what it prints")
+        self.ends(process, 1, "^deploy: its output is no longer read")
         self.assertTrue((scratch() / "unread" / "summary.json").exists())
 
 
@@ -363,7 +363,7 @@ class TestControlC(BadDayTest):
         while "deploying" not in process.stderr.readline():
             self.assertIsNone(process.poll())
         process.send_signal(signal.SIGINT)
-        self.ends(process, STOPPED, "stopped by Ctrl-C; run again it goes on")
+        self.ends(process, STOPPED, "stopped by Ctrl-C; run it again to continue")
         self.assertFalse(folder.exists())
 
 

@@ -255,7 +255,7 @@ class TestFloors(SceneTest):
     def test_a_body_that_is_no_node_cannot_be_named(self):
         net = sheet("law2")
         grain = ball(0, 0, 0.1, material=steel())
-        with self.assertRaisesRegex(ValueError, f"body #{grain.id} is no node of the membrane"):
+        with self.assertRaisesRegex(ValueError, f"body #{grain.id} is not a node of the membrane"):
             set_engines(net, touching=[0, grain.id])
 
     def test_a_body_that_nothing_touches_is_told(self):

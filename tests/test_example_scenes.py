@@ -76,42 +76,6 @@ class TestIkaros(CommandTest):
             self.ends_with_one_sentence(done, "ikaros", f"ikaros: {said}")
 
 
-class TestGuide(unittest.TestCase):
-    def run_script(self, heading):
-        """Run the first script below a heading of the guide; gives what it prints."""
-        text = (ROOT / "reference" / "guide.md").read_text(encoding="utf-8")
-        script = scratch() / "of_the_guide.py"
-        section = text.split(f"\n{heading}\n")[1]
-        script.write_text(section.split("```python\n")[1].split("```")[0], encoding="utf-8")
-        done = run_yade(script, folder=scratch())
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return done.stdout
-
-    def test_balls_lie_on_a_sheet_on_a_floor(self):
-        said = self.run_script("### Other bodies: balls and a floor")
-        heights = re.findall(r"sheet at (\S+) mm, ball at (\S+) mm", said)
-        self.assertEqual(len(heights), 6, said)
-        sheet, ball = map(float, heights[-1])
-        self.assertAlmostEqual(sheet, -17, delta=0.5)  # a node's radius above the floor
-        self.assertAlmostEqual(ball, -17 + 13, delta=5)  # both radii above that, or bouncing
-
-    def test_a_jet_carries_a_sheet(self):
-        said = self.run_script("### Add a force")
-        middle, corner, height = map(float, re.findall(r"(-?[\d.]+) mm", said))
-        self.assertGreater(middle, corner + 1)  # it hangs over the jet
-        self.assertLess(abs(height), 1e-6)
-        work, unexplained = map(float, re.findall(r"(\S+) J", said))
-        self.assertGreater(work, 0)
-        self.assertLess(abs(unexplained), 1e-6 * work)
-
-    def test_its_own_mesh_opens_and_keeps_its_energy(self):
-        said = self.run_script("## 5. Your own mesh")
-        said = re.search(r"opened to (\d+) degrees; energy from nowhere (\S+) J", said)
-        self.assertGreater(int(said[1]), 120)  # from 60
-        self.assertLess(abs(float(said[2])), 1e-3)  # of some 0.03 J
-        self.assertEqual(len(list((scratch() / "sheet").glob("*.vtu"))), 40)
-
-
 class TestDisk(unittest.TestCase):
     @long
     def test_errors_fall_with_the_square_of_the_cells(self):

@@ -619,7 +619,7 @@ class TestErrors(FusedTest):
             made.newton.dead = False
             made.forces.beta = 0.0  # lets it look again
             before = made.positions()
-            with self.refused(f"move its nodes once more; give it mask={2**29 - 1}"):
+            with self.refused(f"move its nodes a second time; give it mask={2**29 - 1}"):
                 scene.advance(3)
             np.testing.assert_array_equal(made.positions(), before)
         made.newton.mask = made.forces.nodeMask - 1

@@ -252,7 +252,7 @@ class TestHub(SceneTest):
         for nodes, message in (
             ([0, 25], "nodes: 25 must be in 0 ... 24"),
             ([-1], "nodes: -1 must be in 0 ... 24"),
-            ([0, 0], "nodes: 0 stands there twice"),
+            ([0, 0], "nodes: 0 is listed twice"),
             ([0, 7], "node 7 must be held"),
         ):
             made.hub.nodes = nodes

@@ -93,7 +93,7 @@ class TestLayout(unittest.TestCase):
                         _layout.check(self.native, wrapper)
                 said = str(caught.exception)
                 self.assertRegex(
-                    said, rf"lays out its classes otherwise.* {cls}\.{name} was set to"
+                    said, rf"lays out its classes differently.* {cls}\.{name} was set to"
                 )
                 self.assertNotIn("\n", said)
 

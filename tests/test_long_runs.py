@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs that take longer: a finer sail, both crease laws, a repeated run, the README's example."""
+"""Runs that take longer: a finer sail, both crease laws, a repeated run."""
 
 import unittest
 from dataclasses import replace
@@ -8,7 +8,7 @@ import numpy as np
 from membrane.parameters import SailParameters
 from membrane.results.output import read_history
 from membrane.run import driver
-from support import O, ROOT, long, main_run, quiet, run_yade, scratch
+from support import O, long, main_run, quiet, scratch
 
 
 def deploy(name, **changes):
@@ -45,13 +45,6 @@ class TestLongRuns(unittest.TestCase):
         for name in ("deployment_rate", "phase_difference", "mean_tip_radius"):
             values = expected[name][:51]
             np.testing.assert_allclose(found[name], values, atol=0.01 * np.ptp(values))
-
-    def test_example_of_ones_own_sail_runs_and_draws(self):
-        folder = scratch() / "example"
-        folder.mkdir()
-        done = run_yade(ROOT / "scripts" / "examples" / "example.py", folder=folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertGreater((folder / "my_sail.png").stat().st_size, 10000)
 
 
 if __name__ == "__main__":

@@ -165,7 +165,7 @@ class TestParameters(unittest.TestCase):
         self.assertEqual(len(list((folder / "shapes").glob("film_*.vtu"))), 4)
 
     def test_unknown_name_in_a_table_is_refused(self):
-        with self.assertRaisesRegex(ValueError, "betta is no parameter of the sail; known are"):
+        with self.assertRaisesRegex(ValueError, "betta is not a parameter of the sail; it has"):
             from_arguments(self.parse(), {"betta": 3.0})
 
     def test_every_description_has_unit_range_and_default(self):

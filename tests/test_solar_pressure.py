@@ -209,7 +209,7 @@ class TestRefusals(SceneTest):
         net = scene.add_membrane(nodes, triangles)
         set_engines(net, path="fused")
         O.engines = [membrane.MembraneForce(membrane=net), *O.engines]
-        with self.assertRaisesRegex(RuntimeError, "MembraneForce is no force"):
+        with self.assertRaisesRegex(RuntimeError, "MembraneForce is not a force itself"):
             O.step()
 
 

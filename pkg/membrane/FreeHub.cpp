@@ -83,7 +83,7 @@ void FreeHub::begin() {
     std::sort(sorted.begin(), sorted.end());
     const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
     if (twice != sorted.end())
-        throw std::runtime_error("FreeHub: nodes: " + std::to_string(*twice) + " stands there twice");
+        throw std::runtime_error("FreeHub: nodes: " + std::to_string(*twice) + " is listed twice");
     if (!(totalInertia() > 0.))
         throw std::runtime_error("FreeHub: inertia and nodes: the hub has no moment of inertia at all");
     places.clear();

@@ -17,7 +17,7 @@ void MembraneForce::action() {
 }
 
 std::shared_ptr<::membrane::ElementForce> MembraneForce::make() const {
-    throw std::runtime_error(getClassName() + " is no force: take a class that is derived from it");
+    throw std::runtime_error(getClassName() + " is not a force itself: use a class derived from it");
 }
 
 } // namespace yade

@@ -88,7 +88,7 @@ void MembraneForceEngine::postLoad(MembraneForceEngine&) {
         refuse("creaseLaw", creaseLaw, "'paper' or 'conservative'");
     if (timeStepCheckPeriod <= 0) refuse("timeStepCheckPeriod", timeStepCheckPeriod, "> 0");
     if (seenPositions.size() != seenVelocities.size())
-        throw std::invalid_argument("MembraneForceEngine: seenPositions and seenVelocities must be of one length");
+        throw std::invalid_argument("MembraneForceEngine: seenPositions and seenVelocities must have the same length");
     if (!allFinite(seenPositions) || !allFinite(seenVelocities))
         throw std::invalid_argument("MembraneForceEngine: seenPositions and seenVelocities must be finite");
     preparedFor_.clear();
@@ -207,10 +207,11 @@ void MembraneForceEngine::checkNode(int node) const {
                       bodies_[node]->state == states_[node];
     if (same && states_[node]->mass == masses_[node]) return;
     const string which = "Membrane: body #" + std::to_string(id) + " of node " + std::to_string(node);
-    if (!same) throw std::runtime_error(which + " was erased or replaced since its forces are computed");
+    if (!same) throw std::runtime_error(which + " was erased or replaced after its forces were first computed");
     std::ostringstream message;
     message << which << ": its mass was changed from " << masses_[node] << " to " << states_[node]->mass
-            << " kg since its forces are computed; give pointMasses to a new membrane, or set the engine's membrane to "
+            << " kg since its forces were first computed; give pointMasses to a new membrane, or set the engine's "
+               "membrane to "
             << "None and back to go on with that mass";
     throw std::runtime_error(message.str());
 }
@@ -317,7 +318,7 @@ void MembraneForceEngine::refuseSide(std::size_t number) const {
     const string which = "Membrane: side " + a + "-" + b + " (bodies #" + std::to_string(membrane->bodyIds[side.a]) +
                          " and #" + std::to_string(membrane->bodyIds[side.b]) + ")";
     if (!interacting_[number])
-        throw std::runtime_error(which + " is no interaction of a MembranePhys, so that it pulls nothing; call "
+        throw std::runtime_error(which + " has no interaction with a MembranePhys, so that nothing computes it; call "
                                          "addInteractions() of the membrane");
     throw std::runtime_error(which + " was not computed in this step: put an InteractionLoop with "
                                      "Ig2_MembraneNode_MembraneNode_MembraneGeom, "
@@ -331,7 +332,7 @@ void MembraneForceEngine::findContacts() {
     if (scene->interactions->size() == interacting_.size()) return; // there are none but sides
     NodeInteractions found(*membrane, *scene);
     if (found.sides && !takesInteractions() && surroundings_.computesInteractions(*scene))
-        throw std::runtime_error(getClassName() + ": the interactions of its membrane would pull once more; call "
+        throw std::runtime_error(getClassName() + ": the interactions of its membrane would pull a second time; call "
                                                   "removeInteractions() of the membrane");
     contacts_.swap(found.contacts);
     for (const NodeContact& contact : contacts_)

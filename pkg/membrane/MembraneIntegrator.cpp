@@ -41,7 +41,8 @@ void MembraneIntegrator::postLoad(MembraneIntegrator&) {
         throw std::invalid_argument("MembraneIntegrator: exchangePeriod = " + std::to_string(exchangePeriod) +
                                     " must be > 0");
     if (!centredVelocities.empty() && centredVelocities.size() != seenPositions.size())
-        throw std::invalid_argument("MembraneIntegrator: centredVelocities and seenPositions must be of one length");
+        throw std::invalid_argument(
+            "MembraneIntegrator: centredVelocities and seenPositions must have the same length");
     if (!allFinite(centredVelocities))
         throw std::invalid_argument("MembraneIntegrator: centredVelocities must be finite");
 }
@@ -153,8 +154,9 @@ void MembraneIntegrator::chooseEngines() {
     centrifugal_ = field ? field->omega * field->omega : 0.;
     if (movesShared()) return;
     if (newton_->mask <= 0 || (newton_->mask & nodeMask))
-        throw std::runtime_error("MembraneIntegrator: NewtonIntegrator would move its nodes once more; give it mask=" +
-                                 std::to_string(nodeMask - 1));
+        throw std::runtime_error(
+            "MembraneIntegrator: NewtonIntegrator would move its nodes a second time; give it mask=" +
+            std::to_string(nodeMask - 1));
 }
 
 /// A NewtonIntegrator that is dead, for only nodes moved, must live when a body comes that is free to move.

@@ -192,7 +192,8 @@ void MembraneLedger::postLoad(MembraneLedger&) {
     if (furtherWorks.size() > furtherNames.size())
         throw std::invalid_argument("MembraneLedger: furtherWorks has more entries than furtherNames");
     if (contactWorks.size() != contactPairs.size() || contactMost.size() != contactPairs.size())
-        throw std::invalid_argument("MembraneLedger: contactPairs, contactWorks and contactMost must be of one length");
+        throw std::invalid_argument(
+            "MembraneLedger: contactPairs, contactWorks and contactMost must have the same length");
 }
 
 void MembraneLedger::bookContacts() {

@@ -24,7 +24,7 @@ install(FILES ${PROJECT_BINARY_DIR}/yade-membrane DESTINATION bin)
 set(doc_dir share/doc/yade-membrane)
 install(FILES README.md DESTINATION ${doc_dir})
 install(FILES LICENSE DESTINATION ${doc_dir} RENAME copyright)
-install(DIRECTORY reference/ DESTINATION ${doc_dir}/reference FILES_MATCHING PATTERN *.md PATTERN *.png
+install(DIRECTORY reference/ DESTINATION ${doc_dir}/reference FILES_MATCHING PATTERN *.md PATTERN *.png PATTERN *.svg
         PATTERN __pycache__ EXCLUDE)
 
 # `scripts/run.sh package` adds what it depends on.

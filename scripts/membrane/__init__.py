@@ -3,10 +3,10 @@
 
 ``import membrane`` in any script run by ``yade`` loads the plugin and gives its classes
 (`Membrane`, `MembraneMat`, `MembraneForceEngine`, …), which also appear in ``yade.wrapper``.
-Without YADE the package can be imported, too: only who asks for a class is refused.
+The package can also be imported without YADE: only asking for a class is then refused.
 
 Its rooms, each of which imports only from those before it, as tests/test_rooms.py sees to:
-the ground, which is beside this file, with what all need, as files, parameters and progress;
+the ground, beside this file: what all need, such as files, parameters and progress;
 `mesh` without YADE; `scene`; `results`, what runs leave; `view`, pictures of them;
 `run`, sails that run; `study`, many runs; `cli`, the commands of scripts/.
 """

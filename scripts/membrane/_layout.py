@@ -22,7 +22,7 @@ def check(native: ModuleType, wrapper: ModuleType) -> None:
         for name, value in wrote.items():
             if seen[name] != value:
                 raise ImportError(
-                    f"membrane: this YADE lays out its classes otherwise than Debian's: "
+                    f"membrane: this YADE lays out its classes differently from Debian's: "
                     f"{cls}.{name} was set to {value} but reads as {seen[name]}"
                 )
 

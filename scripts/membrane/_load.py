@@ -39,14 +39,14 @@ DRAWERS = ("GlExtra_Membrane",)  # only where YADE has its 3D view
 
 
 def load() -> dict[str, type]:
-    """Give the plugin's classes by name; load and register them first if YADE has them not.
+    """Give the plugin's classes by name; load and register them first if YADE does not have them.
 
     A YADE built with them in its source tree has them, whatever its version.
 
     Raises
     ------
     ImportError
-        in one sentence, if there is no YADE, another version of it, or one laid out otherwise.
+        in one sentence, if there is no YADE, another version of it, or one laid out differently.
     """
     wrapper = _running_yade()
     names = CLASSES + (DRAWERS if hasattr(wrapper, "GlExtraDrawer") else ())
@@ -79,7 +79,7 @@ def _let_others_know(native, wrapper):
 def _running_yade():
     """Return module yade.wrapper of the YADE that runs this script."""
     if "yade.wrapper" not in sys.modules:
-        raise ImportError("membrane: no YADE is running; run this script by 'yade script.py'")
+        raise ImportError("membrane: no YADE is running; run this script with 'yade script.py'")
     return sys.modules["yade.wrapper"]
 
 

@@ -59,7 +59,7 @@ def read_bytes(path: Path | str, largest: int = LARGEST) -> bytes:
     with open(path, "rb") as file:
         content = file.read(largest + 1)
     if len(content) > largest:
-        raise BadFile(path, "", f"is larger than {largest} bytes, the most that is read")
+        raise BadFile(path, "", f"is larger than {largest} bytes, the limit")
     if not content.strip():
         raise BadFile(path, "", "is empty")
     return content
@@ -97,7 +97,7 @@ def read_json(path: Path | str, largest: int = LARGEST) -> Any:
     """
 
     def refuse(word: str) -> None:
-        raise BadFile(path, "", f"holds {word}, which is no number of JSON")
+        raise BadFile(path, "", f"holds {word}, which is not a number in JSON")
 
     def number(text: str) -> float:
         value = float(text)
@@ -120,7 +120,7 @@ def read_json(path: Path | str, largest: int = LARGEST) -> Any:
     except RecursionError:
         raise BadFile(path, "", "is nested too deeply") from None
     except ValueError:  # a whole number of more digits than Python converts
-        raise BadFile(path, "", "holds a number of too many digits") from None
+        raise BadFile(path, "", "holds a number with too many digits") from None
 
 
 def read_object(path: Path | str, largest: int = LARGEST) -> dict:

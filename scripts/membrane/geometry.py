@@ -46,7 +46,7 @@ def side_rows(sides, pairs):
     Raises
     ------
     ValueError
-        If a pair is no side.
+        If a pair is not a side.
     """
     size = 1 + np.max(sides, initial=0)
     keys = sides[:, 0] * size + sides[:, 1]
@@ -123,7 +123,7 @@ def cut_quadrangles(nodes, quadrangles):
     if np.any(np.all(outside, axis=0)):
         q = int(np.argmax(np.all(outside, axis=0)))
         middle = nodes[quadrangles[q]].mean(axis=0).tolist()
-        raise ValueError(f"the sides of the quadrangle round {middle} m cross")
+        raise ValueError(f"the sides of the quadrangle around {middle} m cross")
     best = np.where(worst[1] < worst[0] - EVEN, 1, 0)
     return ways[best, np.arange(len(best))].reshape(-1, 3)
 
@@ -194,7 +194,7 @@ def crease_angles(nodes, triangles, creases, signs):
     Raises
     ------
     ValueError
-        If a sign is another, or a crease is no side of two triangles.
+        If a sign is neither +1 nor -1, or a crease is not a side of two triangles.
     """
     signs = np.asarray(signs)
     if not np.all(np.isin(signs, (MOUNTAIN, VALLEY))):

@@ -84,7 +84,7 @@ def number(word: str) -> float:
 
 
 def whole(word: str) -> int:
-    """A whole number from a word: 36, 36.0 and 1e3 are such."""
+    """A whole number from a word such as 36, 36.0 or 1e3."""
     try:
         value: float = int(word)
     except ValueError:  # it has a point, an exponent, too many digits, or is none
@@ -160,7 +160,7 @@ class Creases:
         100.0,
         "-",
         TABLE_2,
-        "penalty on creases that passed through",
+        "penalty on creases whose faces passed through each other",
         sets="MembraneForceEngine.gamma",
     )
     crease_law: str = parameter(
@@ -181,10 +181,10 @@ class Air:
         1.2e-3,
         "kg/m3",
         ASSUMED,
-        "air left in the chamber; 0: none",
+        "density of the air left in the chamber; 0: none",
         sets="MembraneForceEngine.airDensity",
     )
-    gravity: float = parameter(9.81, "m/s2", ASSUMED, "along -z")
+    gravity: float = parameter(9.81, "m/s2", ASSUMED, "gravity, along -z")
 
 
 @dataclass(frozen=True)
@@ -193,7 +193,10 @@ class Hub:
 
     omega: float = parameter(6 * pi, "rad/s", TABLE_1, "spin rate of the spool", above=True)
     hub_inertia: float = parameter(
-        0.0, "kg m2", ASSUMED, "of a hub that turns freely, about the axis; 0: driven at omega"
+        0.0,
+        "kg m2",
+        ASSUMED,
+        "inertia of a hub that turns freely, about the axis; 0: driven at omega",
     )
 
 
@@ -226,7 +229,7 @@ class Tethers:
         2e-4,
         "kg/m",
         ASSUMED,
-        "mass a length of the tethers",
+        "mass per length of the tethers",
         above=True,
         sets="Membrane.cableDensity",
     )
@@ -247,10 +250,12 @@ class SquareSail:
         0.030, "m", ASSUMED, "distance of the guide bars from the axis", above=True
     )
     arm_radius: float = parameter(
-        0.040, "m", ASSUMED, "where a folded strip reaches its arm", above=True
+        0.040, "m", ASSUMED, "radius at which a folded strip reaches its arm", above=True
     )
-    layer_gap: float = parameter(1e-4, "m", ASSUMED, "distance of the folded layers", above=True)
-    refine: int = parameter(1, "-", RUN, "strips and cells are divided by it", least=1, most=32)
+    layer_gap: float = parameter(1e-4, "m", ASSUMED, "distance between folded layers", above=True)
+    refine: int = parameter(
+        1, "-", RUN, "finer mesh: strips and cells are divided by this", least=1, most=32
+    )
 
 
 @dataclass(frozen=True)
@@ -261,19 +266,19 @@ class Engines:
         "fused",
         "-",
         RUN,
-        "who moves the nodes: law2, YADE's loops, the reference; fused, one engine, faster",
+        "who moves the nodes: law2 (YADE's loops, the reference) or fused (one engine, faster)",
         choices=PATHS,
     )
     exchange_period: int = parameter(
         100,
         "-",
         RUN,
-        "path fused: steps between two updates of YADE's bodies",
+        "steps between two updates of YADE's bodies, on path fused",
         least=1,
         sets="MembraneIntegrator.exchangePeriod",
     )
     energy_tolerance: float = parameter(
-        0.1, "-", RUN, "energy from nowhere, over all energy, that stops the run; 0: no watch"
+        0.1, "-", RUN, "share of energy from nowhere that stops the run; 0: no watch"
     )
     check_period: int = parameter(
         5000,
@@ -298,8 +303,12 @@ class Run:
 
     dt: float = parameter(0.0, "s", RUN, "time step; 0: half the critical one")
     duration: float = parameter(1.0, "s", RUN, "time to run after the release")
-    history_interval: float = parameter(1e-3, "s", RUN, "between rows of history.csv", above=True)
-    shapes_interval: float = parameter(1e-2, "s", RUN, "between shapes; 0: only first and last")
+    history_interval: float = parameter(
+        1e-3, "s", RUN, "time between rows of history.csv", above=True
+    )
+    shapes_interval: float = parameter(
+        1e-2, "s", RUN, "time between shapes; 0: only first and last"
+    )
 
 
 @dataclass(frozen=True)
@@ -334,7 +343,7 @@ def with_defaults(**values: Any) -> Callable:
 
 
 def _fields_of(kind):
-    """Fields of a class, () if it is no dataclass."""
+    """Fields of a class, () if it is not a dataclass."""
     return fields(kind) if is_dataclass(kind) else ()
 
 
@@ -353,7 +362,7 @@ class SceneParts(Engines, Hub, Air, Creases, Film):
     zeta=0.0,
     air_density=0.0,
     gravity=0.0,
-    omega=changed(0.0, source=SPIN, text="rate at which what is driven turns", above=False),
+    omega=changed(0.0, source=SPIN, text="spin rate of what is driven", above=False),
     path="law2",
     exchange_period=1,
 )
@@ -405,7 +414,7 @@ class SailParameters(RunParameters, SpinUp, Tethers, Spool, SquareSail, sail="sq
 def check(parameters: Any) -> None:
     """Raise ValueError naming the first of some parameters that is out of range.
 
-    Others get the type that is theirs: 36.0 becomes 36, and 3 becomes 3.0, as may be.
+    The others get their type: 36.0 becomes 36, or 3 becomes 3.0.
     """
     for item in fields(parameters):
         value = getattr(parameters, item.name)
@@ -519,7 +528,7 @@ def from_values(path: str | Path, values: dict, kind: Any = SailParameters) -> A
     known = {item.name for item in fields(kind)}
     for name in values:
         if name not in known:
-            raise BadFile(path, shown(name)[1:-1], "is no parameter")
+            raise BadFile(path, shown(name)[1:-1], "is not a parameter")
     try:
         return kind(**values)
     except ValueError as error:

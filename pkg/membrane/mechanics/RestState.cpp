@@ -219,7 +219,7 @@ void addCrease(const MeshInput& in, std::size_t at, const Film& film, RestState&
     if (sign != 1 && sign != -1)
         refuse("Membrane: creaseSigns[", at, "] = ", sign, " must be +1 (mountain) or -1 (valley)");
     const int side = rest.sideBetween(nodes[0], nodes[1]);
-    if (side < 0) refuse("Membrane: creases[", at, "] = (", nodes.transpose(), ") is no side of any triangle");
+    if (side < 0) refuse("Membrane: creases[", at, "] = (", nodes.transpose(), ") is not a side of any triangle");
     if (film.first[side + 1] - film.first[side] != 2)
         refuse("Membrane: creases[", at, "] = (", nodes.transpose(),
                ") lies on the edge; it must be shared by 2 triangles");

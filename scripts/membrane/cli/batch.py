@@ -36,7 +36,7 @@ def batch_row(kind: Any) -> tuple[dict, str | None]:
     Raises
     ------
     ValueError
-        If the table has a column that nobody knows, or the row a value that cannot be read.
+        If the table has an unknown column, or the row a value that cannot be read.
     """
     file, line = _place()
     if not file:
@@ -49,7 +49,7 @@ def batch_row(kind: Any) -> tuple[dict, str | None]:
     except (NameError, SyntaxError, TypeError, ValueError, ArithmeticError) as error:
         values = " ".join(text for name, text in row.items() if name != "description")
         raise ValueError(
-            f"{file}, line {line}: '{values}' cannot be read ({error}); words stand in quotes"
+            f"{file}, line {line}: '{values}' cannot be read ({error}); words must be in quotes"
         ) from error
     from yade.params import table
 
@@ -81,4 +81,4 @@ def _check_columns(file, row, known):
         if name not in known and name != "description" and not name.startswith("!"):
             near = difflib.get_close_matches(name, known, n=1)
             meant = f"; did you mean '{near[0]}'?" if near else ""
-            raise ValueError(f"{file}: there is no parameter of the column's name '{name}'{meant}")
+            raise ValueError(f"{file}: there is no parameter named '{name}'{meant}")

@@ -19,7 +19,7 @@ DEBIAN = {"vtkmodules": "vtk9"}  # packages whose names in Python and in Debian 
 def plain_errors(command: str, stopped: str = "stopped by Ctrl-C") -> Iterator[None]:
     """End the program with one sentence where what is inside raises an error that is foreseen.
 
-    What a command imports beside the standard library belongs inside, too: a package may be
+    What a command imports besides the standard library belongs inside, too: a package may be
     missing. With MEMBRANE_DEBUG=1 it shows the traceback, too. Other errors are faults of the
     program: a traceback, and what to do with it.
 
@@ -55,7 +55,7 @@ def plain_errors(command: str, stopped: str = "stopped by Ctrl-C") -> Iterator[N
             f"{command}: {error}; scripts/run.sh {command} installs it, or by hand: {command_line}"
         )
     except BrokenPipeError:
-        sys.exit(f"{command}: nobody reads what it prints any more")
+        sys.exit(f"{command}: its output is no longer read")
     except (ImportError, ValueError, RuntimeError, OSError) as error:
         if os.environ.get(DEBUG, "0") not in ("", "0"):
             traceback.print_exc()
@@ -63,7 +63,7 @@ def plain_errors(command: str, stopped: str = "stopped by Ctrl-C") -> Iterator[N
     except Exception:
         traceback.print_exc()
         sys.exit(
-            f"{command}: this is a fault of the program, not of what it was given; please report "
+            f"{command}: this is a bug in the program, not in its input; please report "
             "it with the lines above, the command and its files"
         )
     finally:

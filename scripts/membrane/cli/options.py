@@ -205,6 +205,6 @@ def from_arguments(
     for name, value in (overrides or {}).items():
         if name not in values:
             known = ", ".join(sorted(values))
-            raise ValueError(f"{name} is no parameter of the sail; known are {known}")
+            raise ValueError(f"{name} is not a parameter of the sail; it has {known}")
         values[name] = value
     return kind(**values)

@@ -72,7 +72,7 @@ class Checkpoints:
     def load(self, is_whole: Callable[[dict], bool] = lambda state: True) -> dict | None:
         """Load the scene of the newest one that is whole; returns its state, None if there is none.
 
-        Others are thrown away: the run goes on from an older one, or begins afresh. So are those
+        Others are thrown away: the run continues from an older one, or starts afresh. So are those
         of another YADE, whose classes have other attributes.
 
         Parameters
@@ -109,7 +109,7 @@ def _whole_state(folder):
             if content["yade"] == _this_yade():
                 return content["state"]
             there, here = content["yade"], _this_yade()
-            print(f"{folder} was saved by YADE {there}; this is {here}, which cannot go on from it")
+            print(f"{folder} was saved by YADE {there}; this is {here}, which cannot continue it")
     except (OSError, ValueError, KeyError):
         pass
     return None

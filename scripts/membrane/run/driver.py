@@ -37,7 +37,7 @@ TURN_STEP = 0.05  # rad: what the sail turns in a step, at most, by default
 
 
 def look_away(_: Any) -> None:
-    """What those do who do not watch."""
+    """What is done with a scene that nobody watches."""
 
 
 # ------------------------------------------------------------------------------ from mesh to scene
@@ -385,7 +385,7 @@ class _Deployment:
         return *self.kind.outcomes, *(HUB_OUTCOMES if self.built.hub else ()), *LEDGER_OUTCOMES
 
     def _about(self):
-        """What the summary tells beside measures."""
+        """What the summary tells besides measures."""
         membrane, p = self.built.membrane, self.p
         told = {name: value for name, value in self.facts.items() if name != "release_step"}
         return {

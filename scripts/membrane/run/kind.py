@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a kind of sail gives to the driver, which does all else. Needs no YADE."""
+"""What a kind of sail gives to the driver, which does everything else. Needs no YADE."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field

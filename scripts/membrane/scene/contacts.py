@@ -23,7 +23,7 @@ def check(bodies: Sequence[int], integrated: int) -> None:
     Parameters
     ----------
     bodies : sequence of int
-        Ids of bodies that are no nodes.
+        Ids of bodies that are not nodes.
     integrated : int
         Mask of NewtonIntegrator.
 
@@ -39,13 +39,13 @@ def check(bodies: Sequence[int], integrated: int) -> None:
         kinds = tuple(getattr(yade, name) for name in SHAPES)
         if body.bounded and body.shape is not None and not isinstance(body.shape, kinds):
             raise ValueError(
-                f"{about} is a {type(body.shape).__name__}, which nodes cannot touch; they can a "
-                f"{', '.join(SHAPES)}; if nothing should touch it, set its bounded to False"
+                f"{about} is a {type(body.shape).__name__}, which nodes cannot touch; they can "
+                f"touch a {', '.join(SHAPES)}; if nothing should touch it, set its bounded to False"
             )
         if body.bounded and not isinstance(body.mat, yade.FrictMat):
             raise ValueError(
                 f"{about} has the material {type(body.mat).__name__}; it must have a FrictMat, "
-                "or its bounded be False"
+                "or bounded=False"
             )
         if body.bounded and not body.mask & (integrated | spool.SPOOL_MASK):
             raise ValueError(f"{about} has the mask {body.mask}, with which it touches nothing")

@@ -124,7 +124,7 @@ def set_engines(
     Raises
     ------
     ValueError
-        Naming the body that is no node, or could not be touched.
+        Naming the body that is not a node, or could not be touched.
     """
     p, scene = parameters, yade.Omega()
     others = []
@@ -176,11 +176,11 @@ def set_engines(
 
 
 def _check_touching(membrane, touching, others):
-    """Refuse bodies that are no nodes; tell of `others` that nothing would touch."""
+    """Refuse bodies that are not nodes; warn of `others` that nothing would touch."""
     strangers = set(touching).difference(membrane.bodyIds)
     if strangers:
         raise ValueError(
-            f"set_engines: touching: body #{min(strangers)} is no node of the membrane"
+            f"set_engines: touching: body #{min(strangers)} is not a node of the membrane"
         )
     untouched = [i for i in others if yade.Omega().bodies[i].bounded]
     if untouched and not touching:
@@ -238,7 +238,7 @@ def _interaction_loop(membrane, fused, touching):
 def renew_collider() -> None:
     """Put a new collider in the place of the one that `set_engines` made, if any.
 
-    It counts how often it was loaded, so that else two saves of one state would differ.
+    It counts how often it was loaded: otherwise two saves of the same state would differ.
     """
     omega = yade.Omega()
     old = yade.InsertionSortCollider

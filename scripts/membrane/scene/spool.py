@@ -9,7 +9,7 @@ from yade import utils
 from yade.wrapper import FrictMat, Omega, SpoolRotation
 
 SPOOL_MASK = 1 << 28  # of the facets, which SpoolRotation moves: NewtonIntegrator leaves them alone
-COLOUR = (0.45, 0.48, 0.55)  # else YADE draws one by lot
+COLOUR = (0.45, 0.48, 0.55)  # otherwise YADE picks a random one
 VERLET_DISTANCE = 2e-3  # of the collider [m]
 
 

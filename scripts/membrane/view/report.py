@@ -63,7 +63,7 @@ def write_report(folder: Path | str) -> Path:
     """
     folder = Path(folder)
     if not TEMPLATE.is_file():
-        raise NoViewer("its viewer is not built; `scripts/run.sh viewer` does it, with npm")
+        raise NoViewer("its viewer is not built; `scripts/run.sh viewer` builds it, with npm")
     before, after = TEMPLATE.read_text(encoding="utf-8").split(PLACE)
     # "<" could end the page's script.
     content = json.dumps(run_data(folder), allow_nan=False).replace("<", "\\u003c")
@@ -107,7 +107,7 @@ def _frame(path, nodes, triangles):
     """Positions and FIELDS of a shape; BadFile if it is not one of this sail."""
     positions, data = read_frame(path)
     if len(positions) != nodes or not np.isfinite(positions).all():
-        raise BadFile(path, "", f"must hold {nodes} nodes at finite places")
+        raise BadFile(path, "", f"must hold {nodes} nodes at finite positions")
     for name, *_ in FIELDS:
         if name not in data or len(data[name]) != triangles or not np.isfinite(data[name]).all():
             raise BadFile(path, name, f"must be {triangles} finite values")

@@ -2,7 +2,7 @@
 """A heliogyro: long blades, pleated along their length, that the spin pulls out of a hub.
 
 Blade k points away from the axis at an angle of 2 pi k / blades, flat in the spin plane. It is
-pleated like an accordion: its fold lines lie across it, mountains and valleys by turns, and the
+pleated like an accordion: its fold lines lie across it, mountains and valleys in turn, and the
 pleats stand on edge, so that it is as long as their projection. Its root turns with the hub.
 """
 
@@ -26,10 +26,12 @@ class Blades:
     blades: int = parameter(2, "-", ASSUMED, "blades", least=1, most=100)
     pleats: int = parameter(8, "-", ASSUMED, "pleats of a blade", least=1, most=1000)
     pleat: float = parameter(0.05, "m", ASSUMED, "length of a pleat along the blade", above=True)
-    chord: float = parameter(0.1, "m", ASSUMED, "width of a blade, made whole cells", above=True)
+    chord: float = parameter(
+        0.1, "m", ASSUMED, "width of a blade, rounded to whole cells", above=True
+    )
     root: float = parameter(0.05, "m", ASSUMED, "distance of the roots from the axis", above=True)
     slope: float = parameter(
-        80.0, "deg", ASSUMED, "of the pleats out of the spin plane at the start", most=89.9
+        80.0, "deg", ASSUMED, "angle of the pleats out of the spin plane at the start", most=89.9
     )
     tip_mass: float = parameter(1e-3, "kg", ASSUMED, "mass at the end of each blade")
     refine: int = parameter(2, "-", RUN, "cells of a pleat along the blade", least=1, most=100)

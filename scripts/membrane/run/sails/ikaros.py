@@ -39,10 +39,10 @@ SHOWN = (0.0, 1.0, 2.0, 4.0, 12.0)  # s, and the end
 
 @dataclass(frozen=True)
 class Flight:
-    """What the flight sail has beside the paper's."""
+    """What the flight sail has besides the paper's."""
 
     spin: float = parameter(
-        0.0, "rpm", SPIN, "before stage 2; 0: that with the angular momentum of the flight"
+        0.0, "rpm", SPIN, "spin before stage 2; 0: what gives the flight's angular momentum"
     )
     sun: float = parameter(
         -1.0,
