@@ -13,7 +13,7 @@ from ..run.case import run_case
 from .options import add_out, chosen_sail, from_arguments, parse, sails_text
 
 
-def command_line(kind, words):
+def command_line(kind: type, words: list[str]) -> argparse.Namespace:
     """Parsed words of the command line."""
     parser = argparse.ArgumentParser(
         prog="case",
@@ -34,7 +34,7 @@ def command_line(kind, words):
     return parse(parser, kind, words)
 
 
-def main():
+def main() -> None:
     """Run the case; sys.exit with one sentence if that cannot be."""
     kind, words = chosen_sail(sys.argv[1:])
     arguments = command_line(kind, words)
@@ -46,11 +46,8 @@ def main():
         arguments.checkpoint_every,
         pictures=not arguments.no_pictures,
     )
-    if found["outcome"] == COMPLETE:
+    if found.state == COMPLETE:
         print(f"Complete: {arguments.out}")
-    elif found["time"] is None:
-        print(f"Diverged in the spin-up: {found['reason']}: {arguments.out}")
     else:
-        print(
-            f"Diverged {found['time']:.6g} s after the release: {found['reason']}: {arguments.out}"
-        )
+        when = "in the spin-up" if found.time is None else f"{found.time:.6g} s after the release"
+        print(f"Diverged {when}: {found.reason}: {arguments.out}")
