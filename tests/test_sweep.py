@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Sweeps and cases: whole or not at all, killed at any moment and gone on with, byte for byte."""
 
+import argparse
 import csv
 import json
 import os
@@ -16,17 +17,22 @@ from functools import lru_cache, partial
 from pathlib import Path
 
 import numpy as np
+from membrane.cli.options import chosen_sail, from_arguments, parse
 from membrane.files import replacing, write_json
-from membrane.parameters import TABLE_2_CASES, SailParameters
-from membrane.results.case_folder import COMPLETE, DAMAGED, DIVERGED, FAILED, KILLED, MISSING, look
-from membrane.results.case_folder import LAST_GOOD, part_of
+from membrane.measures import SQUARE_OUTCOMES
+from membrane.parameters import SailParameters
+from membrane.results.case_folder import COMPLETE, DAMAGED, DIVERGED, FAILED, KILLED, LAST_GOOD
+from membrane.results.case_folder import MISSING, Status, identity, look
+from membrane.results.unfinished import UNFINISHED
 from membrane.results.history import read_history
 from membrane.results.output import HistoryWriter
-from membrane.study.sweep import grid, results
+from membrane.run.sails import SAILS
+from membrane.run.sails.sheet import PatternParameters
+from membrane.study.sweep import config, grid, jobs, results
+from membrane.study.verification import paper
 from membrane.view import report
 from processes import Halt, family, kill, send
 from support import ROOT, long, scratch, yade_environment
-from yade import utils
 
 
 CASE, SWEEP = ROOT / "scripts" / "case.py", ROOT / "scripts" / "sweep.py"
@@ -35,7 +41,17 @@ SHORT = [*COARSE, "--duration", "0.02", "--spin-up-tolerance", "1e-3"]
 TOO_LONG = [*COARSE, "--duration", "0.2", "--dt", "2.3e-5", "--force-time-step"]
 TOO_LONG += ["--spin-up-tolerance", "1e-3"]
 OFTEN = ["--checkpoint-every", "0"]
-WALL_TIME, BATCH = "wall_time.json", "batch"  # what may differ
+WALL_TIME = "wall_time.json"  # what may differ, as what is below jobs.WORK
+
+
+def part_of(folder):
+    """Where a case runs until it is finished."""
+    return folder / UNFINISHED
+
+
+def has_result(folder):
+    """Whether there is any result of a case."""
+    return folder.is_dir() and os.listdir(folder) != [UNFINISHED]
 
 
 def start(command, halt):
@@ -56,7 +72,7 @@ def start_case(folder, *options, halt=None):
 
 
 def start_sweep(folder, *options, halt=None):
-    return start(["/usr/bin/python3", SWEEP, "run", "--out", folder, *options], halt)
+    return start(["/usr/bin/python3", SWEEP, *options, "--out", folder], halt)
 
 
 def tree(folder):
@@ -66,7 +82,7 @@ def tree(folder):
     return {
         str(name): path.read_bytes()
         for name, path in names.items()
-        if name.name != WALL_TIME and name.parts[0] != BATCH
+        if name.name != WALL_TIME and name.parts[0] != jobs.WORK
     }
 
 
@@ -91,7 +107,7 @@ def zero(path):
 
 def kill_at(number, run):
     """Kill a command, which `run(halt=...)` starts, at the n-th change of an unfinished case."""
-    halt = Halt(r"\.part/", number)
+    halt = Halt(f"{UNFINISHED}/", number)
     process = run(halt=halt)
     halt.wait(process)
     kill(process)
@@ -139,7 +155,7 @@ class TestCase(SweepTest):
         run = partial(start_case, folder, *TOO_LONG, *OFTEN)
         for number, damage in zip(random.Random(7).sample(range(100, 400), 2), (cut, zero)):
             kill_at(number, run)
-            self.assertFalse(folder.exists())
+            self.assertFalse(has_result(folder))
             saved = (part_of(folder) / "checkpoint").iterdir()
             damage(max(path for path in saved if path.name.isdecimal()) / "scene.yade.gz")
             damage(part_of(folder) / "history.csv")
@@ -158,7 +174,7 @@ class TestCase(SweepTest):
         process = start_case(folder, *options, *OFTEN, halt=halt)
         halt.wait_until(process, lambda: rows(part_of(folder)) >= first + 5)
         kill(process)
-        self.assertFalse(folder.exists())
+        self.assertFalse(has_result(folder))
         self.completes(start_case(folder, *options, *OFTEN))
         self.same(quiet, folder)
         self.assertEqual((folder / "report.html").exists(), report.TEMPLATE.is_file())
@@ -176,7 +192,7 @@ class TestCase(SweepTest):
             process = start_case(folder, *options, halt=halt)
             halt.wait_until(process, reached)
             kill(process)
-            self.assertFalse(folder.exists())
+            self.assertFalse(has_result(folder))
         self.completes(start_case(folder, *options))
         self.same(quiet, folder)
 
@@ -190,7 +206,7 @@ class TestCase(SweepTest):
         self.completes(start_case(folder, *SHORT, "--no-pictures"))
         after = {path: path.stat().st_mtime_ns for path in folder.rglob("*")}
         gone = {path.name for path in before.keys() - after.keys()}
-        self.assertEqual(gone, {"begun.json", "lock"})
+        self.assertEqual(gone, {UNFINISHED, "begun.json", "lock"})
         self.assertLessEqual(after.items(), before.items())
         self.assertFalse(part_of(folder).exists())
 
@@ -232,7 +248,7 @@ class TestCase(SweepTest):
         process = start_case(folder, *COARSE, "--dt", "1e-4")
         said, _ = process.communicate()
         self.assertNotEqual(process.returncode, 0)
-        self.assertFalse(folder.exists())
+        self.assertFalse(has_result(folder))
         status = look(folder)
         self.assertEqual(status.state, FAILED)
         self.assertRegex(status.reason, "dt = 0.0001 s must be <= .*critical")
@@ -255,17 +271,20 @@ class TestSweep(SweepTest):
         self.assertRegex(self.said, r"\d of 2 cases done, \d running")
         with open(self.folder / "cases.csv", newline="") as file:
             rows = list(csv.DictReader(file))
-        self.assertEqual(
-            [(r["alpha_crease"], r["beta"]) for r in rows], [("10", "3"), ("100", "3")]
-        )
+        self.assertEqual([row["alpha_crease"] for row in rows], ["10", "100"])
         for row in rows:
             summary = json.loads((self.folder / "cases" / row["case"] / "summary.json").read_text())
             self.assertEqual(row["outcome"], "complete")
             self.assertEqual(str(summary["parameters"]["alpha_crease"]), row["alpha_crease"] + ".0")
-            self.assertEqual(float(row["final_rate"]), summary["measures"]["final_deployment_rate"])
+            self.assertEqual(summary["parameters"]["beta"], 3)
+            for outcome in SQUARE_OUTCOMES:
+                value = summary["measures"][outcome.name]
+                unit, factor = outcome.shown or (outcome.unit, 1)
+                told = row[outcome.name if unit == "-" else f"{outcome.name}_{unit}"]
+                self.assertEqual(told, "" if value is None else str(factor * value))
             self.assertEqual(row["period_s"], "")  # too short a run to see it
         page = (self.folder / "report.html").read_text()
-        for name in ("deployment_rate.png", "phase_difference.png", "swing.png", "cases.csv"):
+        for name in ("deployment_rate.png", "phase_difference.png", "cases.csv"):
             self.assertIn(f'"{name}"', page)
             self.assertGreater((self.folder / name).stat().st_size, 200)
 
@@ -278,21 +297,21 @@ class TestSweep(SweepTest):
         self.assertRegex(said, "killed before: it was stopped from outside")
         self.same(self.folder, folder)
 
-    def test_yade_batch_killed_alone_leaves_the_same_files(self):
-        folder = scratch() / "killed_batch"
+    def test_snakemake_killed_alone_leaves_the_same_files(self):
+        folder = scratch() / "killed_snakemake"
         halt = Halt("checkpoint/")
         process = start_sweep(folder, *self.OPTIONS, halt=halt)
         halt.wait(process)
         halt.lift()
-        batch, *jobs = family(process.pid)[1:]
-        os.kill(batch, signal.SIGKILL)  # its jobs go on
+        snakemake, *left = family(process.pid)[1:]
+        os.kill(snakemake, signal.SIGKILL)  # its jobs go on
         said = ""
         while "it is still running" not in said:
             line = process.stdout.readline()
             self.assertNotEqual(line, "", f"it came to its end: {said}")
             said += line
         self.assertTrue(said.endswith("; it runs again\n"), said)
-        for job in jobs:
+        for job in left:
             send(job, signal.SIGCONT)
         self.completes(process)
         self.same(self.folder, folder)
@@ -434,6 +453,14 @@ DAMAGES = {
     "parameters a list": (given("parameters", [1]), "case.json: parameters: must be an object"),
     "a parameter a list": (given("parameters", {"beta": [3]}), "case.json: parameters.beta"),
     "a parameter out of range": (given("parameters", {"beta": -3}), "beta = -3 must be >= 0"),
+    "another sail": (given("sail", "kite"), "case.json: sail: is 'kite'; must be one of "),
+    "units missing": (lambda f: (f / "history.units.json").unlink(), "history.units.json"),
+    "summary missing": (lambda f: (f / "summary.json").unlink(), "summary.json"),
+    "summary {}": (filled("summary.json", "{}"), "summary.json: measures: must be an object"),
+    "a measure a word": (
+        filled("summary.json", '{"measures": {"period": "long"}}'),
+        "summary.json: measures.period: is 'long'; must be a number or null",
+    ),
     "diverged without a reason": (given("outcome", "diverged"), "case.json: reason"),
     "diverged at no time": (
         lambda f: changed(
@@ -444,24 +471,30 @@ DAMAGES = {
 }
 
 
+def write_case(folder, p, rows=101):
+    """A complete case with curves of a swing, without running it."""
+    folder.mkdir(parents=True)
+    about = {"outcome": COMPLETE, **identity(p), "versions": {"yade": "2023.02a"}}
+    write_json(folder / "case.json", about)
+    units = {"time": "s", "deployment_rate": "-", "phase_difference": "rad"}
+    time = np.linspace(0, p.duration, rows)
+    swing = -np.sin(50 * time) * p.alpha_crease / 100
+    columns = dict(zip(units, (time, 10 * time, swing)))
+    with HistoryWriter(folder / "history.csv", units) as history:
+        for row in zip(*columns.values()):
+            history.write(dict(zip(units, row)))
+    found = {outcome.name: outcome.of(columns) for outcome in SQUARE_OUTCOMES}
+    write_json(folder / "summary.json", {"measures": found})
+
+
 @lru_cache(maxsize=None)
 def two_cases():
     """Folder of a planned sweep of two cases with curves of a swing, without running them."""
-    folder = scratch() / "two_cases"
-    cases = grid.grid(SailParameters(duration=0.1), [10.0, 100.0], [3.0])
+    folder, base = scratch() / "two_cases", {"beta": 3.0, "duration": 0.1}
+    cases = grid.grid(SailParameters, {"alpha_crease": [10.0, 100.0]}, base)
     grid.plan(folder, cases)
     for name, p in cases.items():
-        place = folder / grid.CASES / name
-        place.mkdir()
-        write_json(
-            place / "case.json",
-            {"outcome": COMPLETE, "parameters": p.as_dict(), "versions": {"yade": "2023.02a"}},
-        )
-        units = {"time": "s", "deployment_rate": "-", "phase_difference": "rad"}
-        with HistoryWriter(place / "history.csv", units) as history:
-            for now in np.linspace(0, p.duration, 101).tolist():
-                swing = -np.sin(50 * now) * p.alpha_crease / 100
-                history.write({"time": now, "deployment_rate": 10 * now, "phase_difference": swing})
+        write_case(folder / grid.CASES / name, p)
     return folder
 
 
@@ -486,7 +519,7 @@ class TestReport(SweepTest):
         """A new copy of two_cases() and the folder of its first case."""
         folder = scratch() / name
         shutil.copytree(two_cases(), folder)
-        return folder, folder / grid.CASES / "alpha_crease_10-beta_3"
+        return folder, folder / grid.CASES / "alpha_crease_10"
 
     def refused(self, folder, *parts):
         """`sweep.py report` and `sweep.py run` end by one sentence and change nothing."""
@@ -524,14 +557,17 @@ class TestReport(SweepTest):
                     row = next(csv.DictReader(file))
                 self.assertEqual((row["case"], row["outcome"]), (case.name, DAMAGED))
                 self.assertIn(reason, row["reason"])
-                self.assertEqual(row["final_rate"], "")
+                self.assertEqual(row["final_deployment_rate"], "")
                 page = (folder / "report.html").read_text()
                 self.assertIn("1 damaged", page)
                 self.assertIn('"deployment_rate.png"', page)
 
     def test_case_of_other_parameters_than_planned_is_not_complete(self):
         folder, case = self.copy("of_another")
-        changed(folder / "sweep.json", lambda plan: plan["cases"][case.name].update(duration=0.2))
+        changed(
+            folder / "sweep.json",
+            lambda plan: plan["cases"][case.name]["parameters"].update(duration=0.2),
+        )
         status, said = self.report(folder)
         self.assertEqual(status, 1)
         self.assertIn("1 of 2 cases are complete", said)
@@ -543,7 +579,7 @@ class TestReport(SweepTest):
                 folder, case = self.copy(f"unfinished_{number}")
                 shutil.rmtree(case)
                 part = part_of(case)
-                part.mkdir()
+                part.mkdir(parents=True)
                 (part / "begun.json").write_text(text)
                 (part / "failure.json").write_text(text)
                 status, said = self.report(folder)
@@ -560,7 +596,10 @@ class TestReport(SweepTest):
             '{"cases": [1]}': "cases: must be an object, not a list of 1",
             '{"cases": {"a": [1]}}': "cases.a: must be an object",
             '{"cases": {"../a": {}}}': "cases.../a: is no name of a folder",
-            '{"cases": {"a": {"beta": "x"}}}': "cases.a: beta = 'x' must be a number",
+            '{"cases": {"a": {"parameters": {}, "sail": []}}}': "cases.a.sail: is a list of 0; must",
+            '{"cases": {"a": {"parameters": {"beta": "x"}, "sail": "square"}}}': (
+                "cases.a.parameters: beta = 'x' must be a number"
+            ),
         }
         for number, (text, reason) in enumerate(plans.items()):
             with self.subTest(text):
@@ -619,13 +658,13 @@ class TestReport(SweepTest):
     def test_holes_are_told_with_their_reasons(self):
         folder = scratch() / "holes"
         parameters = json.loads((diverged() / "case.json").read_text())["parameters"]
-        base = SailParameters(**parameters)
-        cases = grid.grid(base, [10.0, 1000.0], [3.0, 30.0])
+        axes = {"alpha_crease": [10.0, 1000.0], "beta": [3.0, 30.0]}
+        cases = grid.grid(SailParameters, axes, parameters)
         grid.plan(folder, cases)
         here = folder / grid.CASES
         shutil.copytree(diverged(), here / "alpha_crease_1000-beta_30")
         failed = part_of(here / "alpha_crease_10-beta_3")
-        failed.mkdir()
+        failed.mkdir(parents=True)
         (failed / "failure.json").write_text('{"reason": "a <b>reason</b>"}')
         (part_of(here / "alpha_crease_10-beta_30") / "checkpoint").mkdir(parents=True)
         status, said = self.report(folder)
@@ -659,18 +698,37 @@ class TestReport(SweepTest):
 
     def test_large_grid_is_drawn_in_panels(self):
         folder = scratch() / "large"
-        content = json.loads((diverged() / "case.json").read_text())
-        alphas = (1.0, 10.0, 100.0, 1e3, 1e4)
-        for name, p in grid.grid(SailParameters(), alphas, [0.0, 3.0, 30.0]).items():
-            (folder / name).mkdir(parents=True)
-            shutil.copy(diverged() / "history.csv", folder / name)
-            told = {**content, "outcome": "complete", "parameters": p.as_dict()}
-            (folder / name / "case.json").write_text(json.dumps(told))
+        axes = {"alpha_crease": [1.0, 10.0, 100.0, 1e3, 1e4], "beta": [0.0, 3.0, 30.0]}
+        for name, p in grid.grid(SailParameters, axes).items():
+            write_case(folder / name, p)
         status, said = self.report(folder)
         self.assertEqual(status, 0, said)
         self.assertIn("15 of 15 cases are complete", said)
-        for name in ("deployment_rate.png", "phase_difference.png", "swing.png"):
+        page = (folder / "report.html").read_text()
+        self.assertIn("Sweep over alpha_crease and beta", page)
+        for name in ("deployment_rate.png", "phase_difference.png", "maps.png"):
+            self.assertIn(f'"{name}"', page)
             self.assertEqual((folder / name).read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+
+    def test_grid_of_other_numbers_and_of_words_is_drawn_as_far_as_it_can_be(self):
+        for maps, axes in (
+            (True, {"omega": [10.0, 20.0], "fold_lines": [3, 7]}),
+            (False, {"crease_law": ["paper", "conservative"], "omega": [10.0, 20.0]}),
+            (False, {"omega": [10.0, 20.0], "beta": [3.0, 30.0], "zeta": [0.0, 0.1]}),
+        ):
+            with self.subTest(axes=list(axes)):
+                folder = scratch() / f"grid_of_{'_'.join(axes)}"
+                for name, p in grid.grid(SailParameters, axes).items():
+                    write_case(folder / name, p)
+                status, said = self.report(folder)
+                self.assertEqual(status, 0, said)
+                with open(folder / "cases.csv", newline="") as file:
+                    rows = list(csv.DictReader(file))
+                found = {name: {row[name] for row in rows} for name in axes}
+                self.assertEqual(found, {n: set(map(grid.text, v)) for n, v in axes.items()})
+                page = (folder / "report.html").read_text()
+                for name, drawn in (("phase_difference.png", True), ("maps.png", maps)):
+                    self.assertEqual(f'"{name}"' in page, drawn)
 
     def test_case_that_has_a_page_is_linked_to_it(self):
         folder, case = self.copy("with_a_page")
@@ -691,51 +749,70 @@ class TestReport(SweepTest):
 
 class TestGrid(unittest.TestCase):
     def test_default_grid_is_that_of_table_2(self):
-        cases = grid.grid(SailParameters(), **TABLE_2_CASES)
+        cases = grid.grid(SailParameters, {})
         found = {(p.alpha_crease, p.beta) for p in cases.values()}
-        self.assertEqual(found, {(a, b) for a in (100, 1000) for b in (0, 3, 30)})
+        self.assertEqual(found, {(a, b) for a in paper.ALPHA_CREASE for b in paper.BETA})
+        self.assertEqual(len(cases), len(found))
         for p in cases.values():
-            self.assertEqual(replace(p, alpha_crease=1000.0, beta=30.0), SailParameters())
+            self.assertGreaterEqual(p.duration, 1.2)  # to see the lead that follows the lag
+            usual = replace(p, alpha_crease=1000.0, beta=30.0, duration=1.0)
+            self.assertEqual(usual, SailParameters())
+
+    def test_several_values_are_an_axis_and_single_ones_are_shared(self):
+        given = {"omega": [15.0, 20.0], "beta": [3.0], "crease_law": ["paper", "conservative"]}
+        cases = grid.grid(SailParameters, given, {"zeta": 0.1, "beta": 30.0})
+        self.assertEqual(len(cases), 4)
+        for name, p in cases.items():
+            self.assertEqual(name, f"omega_{p.omega:g}-crease_law_{p.crease_law}")
+            self.assertEqual((p.beta, p.zeta, p.duration), (3.0, 0.1, 1.0))
 
     def test_names_tell_close_values_apart(self):
-        self.assertEqual(len(grid.grid(SailParameters(), [1e-9, 1.0, 1 + 1e-15], [0.0])), 3)
+        close = {"alpha_crease": [1e-9, 1.0, 1 + 1e-15]}
+        self.assertEqual(len(grid.grid(SailParameters, close)), 3)
+        files = {"file": ["a/b.fold", "a_b.fold"]}
+        with self.assertRaisesRegex(ValueError, "two cases would have one name"):
+            grid.grid(PatternParameters, files)
 
     def test_value_given_twice_or_out_of_range_is_refused(self):
-        with self.assertRaisesRegex(ValueError, "beta: 3 3: a value is given twice"):
-            grid.grid(SailParameters(), [10.0], [3.0, 3.0])
-        with self.assertRaisesRegex(ValueError, "beta = -1"):
-            grid.grid(SailParameters(), [10.0], [-1.0])
+        for given, sentence in (
+            ({"alpha_crease": [10.0], "beta": [3.0, 3.0]}, "beta: 3 3: a value is given twice"),
+            ({"beta": [-1.0, 3.0]}, "beta = -1"),
+            ({"zeta": [-1.0]}, "zeta = -1"),
+        ):
+            with self.assertRaisesRegex(ValueError, sentence):
+                grid.grid(SailParameters, given)
+        with self.assertRaisesRegex(ValueError, "give several values of a parameter"):
+            grid.grid(PatternParameters, {"omega": [10.0]})
 
-    def test_table_gives_yade_batch_the_same_parameters(self):
-        base = SailParameters(dt=1e-5 / 3, path="law2", force_time_step=True, gravity=0.0)
-        cases = grid.grid(base, [0.1, 1e3], [1 / 3])
-        own = {name: {"out": f"../{name}"} for name in cases}
-        path = scratch() / "table.txt"
-        path.write_text(grid.table(cases, own))
-        rows = utils.TableParamReader(str(path)).paramDict()
-        self.assertEqual(len(rows), 2)
-        for row in rows.values():
-            name = row.pop("description")
-            values = {column: eval(value) for column, value in row.items()}
-            self.assertEqual(values.pop("out"), f"../{name}")
-            self.assertEqual(replace(SailParameters(), **values), cases[name])
+    def test_words_of_a_case_ask_for_its_parameters(self):
+        for p in (
+            SailParameters(),
+            SailParameters(dt=1e-5 / 3, path="law2", force_time_step=True, gravity=0.0, beta=1 / 3),
+            PatternParameters(file="a b.fold", flat=True, poisson=-1e-7),
+            SAILS["ikaros"].parameters(spin=2.7, sun=30.0),
+            SAILS["miura"].parameters(file="other.fold", omega=0.1 + 0.2),
+        ):
+            kind, words = chosen_sail(grid.case_words(p))
+            parser = argparse.ArgumentParser()
+            self.assertEqual(from_arguments(parse(parser, kind, words), kind=kind), p)
 
 
 class TestMeasures(unittest.TestCase):
     def measure(self, until):
-        """Measures of a tip that lags by 30 degrees and then leads, with a period of 2 s."""
+        """Outcomes of tips that lag by 30 degrees and then lead, with a period of 2 s."""
         time = np.linspace(0, until, 1001)
         columns = {
             "time": time,
             "phase_difference": -np.radians(30) * np.sin(np.pi * time),
             "deployment_rate": time / until,
         }
-        return results.measure(columns)
+        case = Status(Path(), COMPLETE, measures={o.name: o.of(columns) for o in SQUARE_OUTCOMES})
+        return {o.name: results.measured(case, o) for o in SQUARE_OUTCOMES}
 
     def test_swing_of_a_known_curve(self):
         found = self.measure(2.0)
         self.assertAlmostEqual(found["amplitude"], 30, places=6)
-        self.assertAlmostEqual(found["time_of_amplitude"], 0.5)
+        self.assertAlmostEqual(found["time_of_largest_lag"], 0.5)
         self.assertAlmostEqual(found["period"], 2)
         self.assertAlmostEqual(found["time_of_rate_0.9"], 1.8, delta=0.003)
 

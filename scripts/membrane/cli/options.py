@@ -6,25 +6,27 @@ import os
 from dataclasses import fields
 from pathlib import Path
 
-from ..parameters import PARSERS, Refused, SailParameters, check_name, describe, read_values, whole
+from ..files import shown
+from ..parameters import PARSERS, Refused, RunParameters, SailParameters, check_name, describe
+from ..parameters import read_values, whole
 from ..run.sails import SAILS
 
 
-def folder(text):
+def folder(text: str) -> Path:
     """A Path from a word of the command line, which must not be empty."""
     if not text:
         raise Refused("must name a folder")
     return file(text)
 
 
-def file(text):
+def file(text: str) -> Path:
     """A Path from a word of the command line; Refused unless its name is UTF-8."""
     path = Path(os.path.expanduser(text))
     check_name(path)
     return path
 
 
-def count(text):
+def count(text: str) -> int:
     """A whole number from a word of the command line, which must be at least 1."""
     found = whole(text)
     if found < 1:
@@ -44,7 +46,7 @@ def add_only(parser, names, text, word="MODULE"):
     parser.add_argument("--only", nargs="+", **about)
 
 
-def chosen_sail(words, default="square"):
+def chosen_sail(words: list[str], default: str = "square") -> tuple[type, list[str]]:
     """Which kind of sail the first word of a command line means, and the words that are left.
 
     Parameters
@@ -72,13 +74,15 @@ def chosen_sail(words, default="square"):
     return SAILS[default].parameters, words
 
 
-def sails_text():
+def sails_text() -> str:
     """What a help text tells of the kinds of sail."""
     kinds = "; ".join(f"{name}, {kind.title}" for name, kind in SAILS.items())
     return f"SAIL, if any, comes first: {kinds}; or the name of such a file (default square)."
 
 
-def add_arguments(parser, kind=SailParameters, several=None, defaults=None):
+def add_arguments(
+    parser: argparse.ArgumentParser, kind: type = SailParameters, several: bool = False
+) -> None:
     """Add one option for every parameter to an argparse parser, grouped by source.
 
     Parameters
@@ -86,23 +90,22 @@ def add_arguments(parser, kind=SailParameters, several=None, defaults=None):
     parser : ArgumentParser
     kind : class
         Of the parameters.
-    several : dict, optional
-        Defaults, a sequence each, of those parameters that take one value or more.
-    defaults : dict, optional
-        Of the others, in place of those of `kind`.
+    several : bool
+        Each takes one value or more, and has none unless it is given.
     """
-    chosen = {**(defaults or {}), **{name: list(v) for name, v in (several or {}).items()}}
     for source in dict.fromkeys(item.metadata["source"] for item in fields(kind)):
         group = parser.add_argument_group(f"parameters, {source}")
         for item in fields(kind):
             if item.metadata["source"] == source:
-                add_argument(group, item, chosen.get(item.name, item.default))
+                _add_argument(group, item, several)
 
 
-def parse(parser, kind=SailParameters, words=None, *, several=None, defaults=None, root=None):
+def parse(
+    parser: argparse.ArgumentParser, kind: type = SailParameters, words: list[str] | None = None
+) -> argparse.Namespace:
     """Arguments of an argparse parser with options for all parameters and one for a file of them.
 
-    What is given on the command line wins over the file, which wins over `defaults`, a dict.
+    What is given on the command line wins over the file, which wins over defaults.
 
     Parameters
     ----------
@@ -112,28 +115,24 @@ def parse(parser, kind=SailParameters, words=None, *, several=None, defaults=Non
         Of the parameters.
     words : list of str, optional
         In place of those of sys.argv.
-    several : dict, optional
-        See add_arguments; the file's values of these parameters do not count.
-    defaults : dict, optional
-        In place of those of `kind`.
-    root : ArgumentParser, optional
-        Parses, if `parser` is one of its commands.
 
     Raises
     ------
     BadFile or OSError
     """
-    add_arguments(parser, kind, several, defaults)
+    add_arguments(parser, kind)
+    add_file(parser)
+    arguments = parser.parse_args(words)
+    if arguments.parameters is not None:
+        parser.set_defaults(**read_values(arguments.parameters, kind))
+        arguments = parser.parse_args(words)
+    return arguments
+
+
+def add_file(parser: argparse.ArgumentParser) -> None:
+    """Add the option --parameters, a file of them."""
     text = "take parameters that are not given from this JSON file, as summary.json of a run"
     parser.add_argument("--parameters", type=_named, metavar="FILE", help=text)
-    root = root or parser
-    arguments = root.parse_args(words)
-    file = getattr(arguments, "parameters", None)
-    if file is not None:
-        values = read_values(file, kind)
-        parser.set_defaults(**{n: v for n, v in values.items() if n not in (several or {})})
-        arguments = root.parse_args(words)
-    return arguments
 
 
 def _named(word):
@@ -142,38 +141,35 @@ def _named(word):
     return word
 
 
-def add_argument(group, item, default):
-    """Add the option for one parameter to an argparse parser or group.
+def _truth(word):
+    """A truth value from a word of the command line."""
+    if word.lower() not in ("true", "false"):
+        raise Refused(f"must be true or false, not {shown(word)}")
+    return word.lower() == "true"
 
-    Parameters
-    ----------
-    group : ArgumentParser or its group
-    item, default
-        As of `describe`.
-    """
-    if item.name == "file" and not default:
-        group.add_argument("file", type=_named, help=item.metadata["text"])
+
+def _add_argument(group, item, several):
+    """Add the option for one parameter, a Field, to an argparse group."""
+    about, form = item.metadata, {"nargs": "+"} if several else {}
+    if item.name == "file" and not item.default:
+        group.add_argument("file", type=_named, help=about["text"], **form)
         return
-    flag = "--" + item.name.replace("_", "-")
-    text = describe(item, default).replace("%", "%%")
-    if item.type is bool:
+    flag, text = "--" + item.name.replace("_", "-"), describe(item).replace("%", "%%")
+    default = argparse.SUPPRESS if several else item.default
+    if item.type is bool and not several:
         group.add_argument(flag, action=argparse.BooleanOptionalAction, default=default, help=text)
         return
-    choices = item.metadata["choices"]
-    metavar = None if choices else item.metadata["unit"].replace("-", "N")
-    more = {"nargs": "+"} if isinstance(default, list) else {}
-    group.add_argument(
-        flag,
-        type=PARSERS[item.type],
-        default=default,
-        choices=choices,
-        metavar=metavar,
-        help=text,
-        **more,
-    )
+    if item.type is bool:
+        form = {"nargs": "*", "type": _truth}
+    else:
+        form |= {"type": PARSERS[item.type], "choices": about["choices"]}
+        form["metavar"] = None if about["choices"] else about["unit"].replace("-", "N")
+    group.add_argument(flag, default=default, help=text, **form)
 
 
-def from_arguments(arguments, overrides=None, kind=SailParameters):
+def from_arguments(
+    arguments: argparse.Namespace, overrides: dict | None = None, kind: type = SailParameters
+) -> RunParameters:
     """Parameters from parsed arguments; `overrides` (a dict, as from a batch table) win."""
     values = {item.name: getattr(arguments, item.name) for item in fields(kind)}
     for name, value in (overrides or {}).items():
