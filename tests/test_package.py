@@ -54,7 +54,7 @@ class TestPackage(unittest.TestCase):
         folder.mkdir()
         said_by("dpkg-deb", "--extract", package(), root)
         names = [path.name for path in root.rglob("*")]
-        for name in ("guide.md", "example.py", "Snakefile", "status.sh", "miura.fold", "copyright"):
+        for name in ("guide.md", "example.py", "Snakefile", "miura.fold", "copyright"):
             self.assertIn(name, names)
         self.assertNotIn("__pycache__", names)
         plain = {name: os.environ[name] for name in ("PATH", "HOME") if name in os.environ}

@@ -11,6 +11,7 @@ import resource
 import shutil
 import signal
 import subprocess
+import time
 import unittest
 from dataclasses import replace
 from functools import lru_cache, partial
@@ -31,8 +32,9 @@ from membrane.run.sails.sheet import PatternParameters
 from membrane.study.sweep import config, grid, jobs, results
 from membrane.study.verification import paper
 from membrane.view import report
-from processes import Halt, family, kill, send
-from support import ROOT, long, scratch, yade_environment
+from processes import Halt, family, kill, send, state
+from slurm import Slurm
+from support import ROOT, CommandTest, long, scratch, yade_environment
 
 
 CASE, SWEEP = ROOT / "scripts" / "case.py", ROOT / "scripts" / "sweep.py"
@@ -823,6 +825,281 @@ class TestMeasures(unittest.TestCase):
         found = self.measure(0.4)
         self.assertIsNone(found["amplitude"])
         self.assertIsNone(found["period"])
+
+
+# What a file of configuration holds, and parts of what must be said of it.
+BAD = {
+    "": "is empty",
+    "[1]": "must hold names with values",
+    "grid: [": "line 1, column 8: is no YAML",
+    "when: 2020-13-45": "is no YAML",
+    "grid: [1]": "grid: must be names with values, not a list of 1",
+    "grid: {beta: []}": "--beta: expected at least one argument",
+    "grid: {beta: [3, 3.0]}": "beta: 3 3: a value is given twice",
+    "grid: {beta: [-3]}": "beta = -3.0 must be >= 0",
+    "grid: {beta: [.nan]}": "beta = nan must be >= 0",
+    "grid: {beta: [[3]]}": "--beta: must be a number, not '[3]'",
+    "grid: {bta: [3]}": "unrecognized arguments: --bta 3",
+    "grid: {omega: [15], omega: [20]}": "omega: is given twice",
+    "grid: {omega: [15]}\noptions: {omega: 20}": "omega: is given twice",
+    "out: a\nout: b": "out: is given twice",
+    '{"grid": {"beta": [3]}, "grid": {"beta": [4]}}': "grid: is given twice",
+    "gird: {beta: [3]}": "gird: is nothing to configure",
+    "options: 3": "options: must be names with values, not 3",
+    "options: {fold_lines: 3.5}": "--fold-lines: must be a whole number, not '3.5'",
+    "options: {zeta: yes}": "--zeta: expected at least one argument",
+    "options: {crease_law: mine}": "--crease-law: invalid choice: 'mine'",
+    "options: {force_time_step: 1}": "--force-time-step: must be true or false, not '1'",
+    "options: {checkpoint_every: soon}": "--checkpoint-every: invalid float value: 'soon'",
+    "sail: 3": "sail: must be a word, not 3",
+    "sail: miura\ngrid: {fold_lines: [3, 7]}": "unrecognized arguments: --fold-lines 3 7",
+    "threads: many": "--threads: must be a number, not 'many'",
+    "memory: 0": "--memory: 0: must be at least 1",
+    "threads: 1e400": "--threads: '1e400' is too large a number",
+    '{"out": "\\udcff"}': "must be UTF-8",
+    "minutes: 1.5": "--minutes: must be a whole number, not '1.5'",
+}
+
+
+class TestCommandLine(CommandTest):
+    """What is asked for, by words and by files; nothing runs."""
+
+    def setUp(self):
+        self.folder = scratch() / self.id().rpartition(".")[2]
+        self.folder.mkdir()
+
+    def dry(self, *options, home=None):
+        """`sweep.py --dry-run` in the folder, which leaves nothing."""
+        before = sorted(self.folder.rglob("*"))
+        done = subprocess.run(
+            ["/usr/bin/python3", SWEEP, *options, "--dry-run"],
+            cwd=self.folder,
+            env={**yade_environment(), **({"HOME": str(home)} if home else {})},
+            capture_output=True,
+            text=True,
+        )
+        self.assertEqual(sorted(self.folder.rglob("*")), before)
+        return done
+
+    def cases(self, *options, **more):
+        """States of the cases by name."""
+        done = self.dry(*options, **more)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return dict(line.split(": ") for line in done.stdout.splitlines())
+
+    def write(self, text):
+        (self.folder / "mine.yaml").write_text(text)
+        return "--config", "mine.yaml"
+
+    def test_bad_file_is_one_sentence(self):
+        for text, reason in BAD.items():
+            with self.subTest(text):
+                done = self.dry(*self.write(text))
+                self.ends_with_one_sentence(done, "sweep", "sweep: mine.yaml: ", reason)
+                self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+
+    def test_missing_file_no_core_and_no_folder_are_one_sentence(self):
+        self.ends_with_one_sentence(self.dry("--config=nowhere.yaml"), "sweep", "nowhere.yaml")
+        for option in ("-j0", "--jobs=-1", "--threads=00"):
+            done = self.dry(option)
+            self.assertRegex(done.stderr, "sweep: error: argument .*: must be at least 1\n$")
+        self.ends_with_one_sentence(self.dry("miura"), "sweep", "give several values")
+        self.ends_with_one_sentence(self.dry("--checkpoint-every=-1"), "sweep", "must be >= 0")
+        (self.folder / "file").write_text("")
+        (self.folder / "summary.json").write_text("")
+        done = self.dry("--out", ".")
+        self.ends_with_one_sentence(done, "sweep", "summary.json is a single run's")
+
+    def test_file_and_command_line_ask_for_the_same(self):
+        text = "sail: miura\ngrid: {omega: [15, 20.0]}\noptions: {size: 1e-1, flat: true}\n"
+        found = self.cases(*self.write(f"{text}out: there\nmemory: 1e3\nthreads: 1.0\n"))
+        self.assertEqual(found, {"omega_15": MISSING, "omega_20": MISSING})
+        words = ["miura", "--omega", "15", "20", "--size=.1", "--flat", "--out", "there"]
+        self.assertEqual(self.cases(*words), found)
+
+    def test_command_line_wins_over_the_file(self):
+        given = self.write("grid: {omega: [15, 20]}\noptions: {beta: 3}\n")
+        self.assertEqual(set(self.cases(*given)), {"omega_15", "omega_20"})
+        self.assertEqual(set(self.cases(*given, "--omega", "7", "8")), {"omega_7", "omega_8"})
+        both = {f"beta_{b}-omega_{a}" for a in (15, 20) for b in (1, 2)}
+        self.assertEqual(set(self.cases(*given, "--beta", "1", "2")), both)
+        self.assertEqual(set(self.cases("miura", *given)), {"omega_15", "omega_20"})
+
+    def test_values_taken_over_in_yaml_are_not_given_twice(self):
+        text = "a: &a {beta: 3, zeta: 1}\nb: {c: &c {<<: *a, beta: 4}}\nd: {<<: *c, beta: 5}\n"
+        self.write(text)
+        found = config.read_config(self.folder / "mine.yaml")
+        self.assertEqual(found["b"]["c"], {"beta": 4, "zeta": 1})
+        self.assertEqual(found["d"], {"beta": 5, "zeta": 1})
+
+    def test_folder_may_look_like_an_option_or_stand_below_home(self):
+        table_2 = self.cases()
+        self.assertEqual(len(table_2), 6)
+        for out, meant in (("-dash", self.folder / "-dash"), ("~/grid", scratch() / "grid")):
+            with self.subTest(out):
+                place = meant / grid.CASES / "alpha_crease_100-beta_0"
+                write_case(place, SailParameters(alpha_crease=100.0, beta=0.0, duration=1.2))
+                found = self.cases(*self.write(f"out: {out}\n"), home=scratch())
+                self.assertEqual(found, {**table_2, place.name: COMPLETE})
+
+
+class TestAnySail(SweepTest):
+    """A sheet from a file, of a mesh that is as coarse as can be."""
+
+    OPTIONS = ["--size", "0.05", "--duration", "0.01", "--no-pictures", *OFTEN]
+
+    def sheet(self, name):
+        """A FOLD file of its own."""
+        path = scratch() / f"{name}.fold"
+        shutil.copy(ROOT / "scripts" / "patterns" / "miura.fold", path)
+        return path
+
+    def test_sweep_over_a_sheet_reports_its_own_measures(self):
+        folder, sheet = scratch() / "sheets", self.sheet("swept")
+        words = [SWEEP, sheet, "--omega", "40", "60", *self.OPTIONS, "--out", folder]
+        said = self.completes(start(["/usr/bin/python3", *words], None))
+        self.assertIn("2 of 2 cases are complete, 0 diverged.", said)
+        with open(folder / "cases.csv", newline="") as file:
+            found = {row["omega"]: row for row in csv.DictReader(file)}
+        for omega, row in found.items():
+            summary = json.loads((folder / "cases" / row["case"] / "summary.json").read_text())
+            self.assertEqual((summary["sail"], summary["parameters"]["file"]), ("sheet", str(sheet)))
+            angle = np.degrees(summary["measures"]["final_mean_crease_angle"])
+            self.assertAlmostEqual(float(row["final_mean_crease_angle_deg"]), angle)
+        areas = {omega: float(row["largest_projected_area"]) for omega, row in found.items()}
+        self.assertGreater(areas["60"], areas["40"])  # the faster it spins the sooner it opens
+        for name in ("radius.png", "crease_angle.png", "spin.png"):
+            self.assertEqual((folder / name).read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        sheet.write_text(sheet.read_text() + "\n")
+        said, _ = start(["/usr/bin/python3", *words], None).communicate()
+        self.assertRegex(said, "^sweep: .*omega_40 holds another case: sum_of_file = ")
+
+    def test_killed_case_of_a_sheet_goes_on_unless_its_file_is_another(self):
+        quiet, folder, sheet = scratch() / "quiet_sheet", scratch() / "cut_sheet", self.sheet("cut")
+
+        def run(place, halt=None):
+            words = [CASE, sheet, "--out", place, *self.OPTIONS]
+            return start(["yade", "-n", "-x", "-j1", *words], halt)
+
+        self.completes(run(quiet))
+        kill_at(60, partial(run, folder))
+        self.assertFalse(has_result(folder))
+        text = sheet.read_text()
+        sheet.write_text(text + "\n")
+        said, _ = run(folder).communicate()
+        self.assertRegex(said, f"case: {part_of(folder)} holds another case: sum_of_file = .*lose")
+        sheet.write_text(text)
+        self.completes(run(folder))
+        self.same(quiet, folder)
+
+
+class TestStopped(SweepTest):
+    def test_control_c_ends_all_in_one_sentence_and_nobody_else_sweeps_there(self):
+        folder = scratch() / "stopped"
+        options = [*COARSE, "--duration", "20", "--omega", "15", "20", "--no-pictures"]
+        process = start_sweep(folder, *options)
+        while "2 running" not in process.stdout.readline():
+            self.assertIsNone(process.poll())
+        said, _ = start_sweep(folder, *options).communicate()
+        self.assertEqual(said, f"sweep: another sweep is running in {folder}\n")
+        started = family(process.pid)[1:]
+        self.assertGreater(len(started), 2)
+        process.send_signal(signal.SIGINT)
+        said, _ = process.communicate()
+        self.assertEqual(process.returncode, 130)
+        self.assertEqual(said.splitlines()[-1], "sweep: stopped; the same command goes on from here")
+        self.assertNotIn("Traceback", said)
+        self.assertEqual([pid for pid in started if state(pid) not in "XZ"], [])
+
+    def test_what_snakemake_says_where_it_fails_itself_is_quoted(self):
+        folder = scratch() / "no_cache"
+        environment = {**yade_environment(), "XDG_CACHE_HOME": "/dev/null"}
+        done = subprocess.run(
+            ["/usr/bin/python3", SWEEP, *SHORT, "--omega", "15", "20", "--out", folder],
+            env={**environment, "MPLCONFIGDIR": str(scratch())},
+            capture_output=True,
+            text=True,
+        )
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(
+            done.stderr.splitlines()[-1],
+            f"^sweep: Snakemake ended by 1: .*Not a directory: '/dev/null/.*{folder}/.*log$",
+        )
+
+
+@long
+class TestSlurm(SweepTest):
+    """A 2 x 2 sweep on a real Slurm; one job is cancelled while it runs, and one sweep killed."""
+
+    OPTIONS = [*COARSE, "--duration", "0.05", "--spin-up-tolerance", "1e-2", "--no-pictures"]
+    OPTIONS += ["--beta", "3", "30", "--alpha-crease", "100", "1000", "--slurm", "--memory", "1000"]
+
+    def start(self, slurm, folder):
+        return subprocess.Popen(
+            ["/usr/bin/python3", SWEEP, *self.OPTIONS, *OFTEN, "--out", folder],
+            env={**yade_environment(), **slurm.environment},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+
+    def running(self, slurm, sweep, ready=lambda job, case: True):
+        """Id and case of a job on Slurm as soon as one runs that is `ready`."""
+        while sweep.poll() is None:
+            for job, case, now in slurm.jobs():
+                if now == "RUNNING" and ready(job, case):
+                    return job, case
+            time.sleep(0.1)
+        self.fail(sweep.communicate()[0])
+
+    def test_a_cancelled_job_runs_again_and_a_killed_sweep_goes_on(self):
+        folder = scratch() / "slurm"
+        with Slurm() as slurm:
+            sweep = self.start(slurm, folder)
+            self.running(slurm, sweep)
+            before = {job for job, *_ in slurm.jobs()}
+            kill(sweep)
+            sweep = self.start(slurm, folder)
+            saved = folder / grid.CASES / "{}" / UNFINISHED / "checkpoint"
+            job, victim = self.running(
+                slurm,
+                sweep,
+                lambda job, case: job not in before and Path(str(saved).format(case)).exists(),
+            )
+            slurm.run("scancel", job)
+            said = self.completes(sweep)
+            self.assertEqual(slurm.jobs(), [])
+            again = self.completes(self.start(slurm, folder))
+            left = slurm.processes()
+        self.assertRegex(said, f"{victim}: it was stopped from outside.*; it runs again")
+        self.assertIn("4 of 4 cases are complete, 0 diverged.", said)
+        self.assertIn("4 of 4 cases are there already", again)
+        self.assertLessEqual(len(left), 3)  # its daemons
+        with open(folder / "cases.csv", newline="") as file:
+            outcomes = {row["case"]: row["outcome"] for row in csv.DictReader(file)}
+        names = {f"alpha_crease_{a}-beta_{b}" for a in (100, 1000) for b in (3, 30)}
+        self.assertEqual(outcomes, dict.fromkeys(names, COMPLETE))
+
+    def test_control_c_cancels_its_jobs(self):
+        with Slurm() as slurm:
+            sweep = self.start(slurm, scratch() / "slurm_stopped")
+            self.running(slurm, sweep)
+            sweep.send_signal(signal.SIGINT)
+            said, _ = sweep.communicate()
+            self.assertEqual(sweep.returncode, 130, said)
+            while slurm.jobs():  # those that end
+                self.assertNotIn("PENDING", {state for *_, state in slurm.jobs()})
+                time.sleep(0.1)
+
+    def test_a_test_that_fails_leaves_no_daemon_and_no_job(self):
+        slurm = Slurm()
+        with self.assertRaises(ZeroDivisionError):
+            with slurm:
+                slurm.run("sbatch", "--mem=100", "--output=/dev/null", "--wrap", "sleep 1000")
+                self.assertGreaterEqual(len(slurm.processes()), 3)
+                1 / 0
+        self.assertEqual(slurm.processes(), [])
+        self.assertFalse(slurm.folder.exists())
 
 
 @long
