@@ -15,15 +15,14 @@ usage: scripts/run.sh COMMAND [options]
                             options of scripts/sail.py
   miura [options]           a Miura-ori sheet from a FOLD file, unfolded by tip masses
   watch [-j N] [options]    deploy the sail in YADE's own window; close the window to end
-  sweep [-j N] [options]    run the paper's Table 2, or a grid of one's own, N cases at once, and
-                            report into out/sweep; run again, it goes on where it was stopped;
-                            options by `scripts/run.sh sweep --help`
+  sweep [SAIL] [options]    run the paper's Table 2, or a grid over any parameters of any sail, by
+                            Snakemake, here (-j N cores) or on Slurm (--slurm), and report into
+                            out/sweep; run again, it goes on where it was stopped; options by
+                            `scripts/run.sh sweep --help`; sweep report DIR only reports
   case --out DIR [options]  one deployment that leaves all its results or none and, run again
                             after it was stopped, goes on; options by `scripts/run.sh case --help`
   ikaros [options]          stage 2 of the flight sail on a free hub; options of scripts/ikaros.py
   disk [--out DIR]          accuracy: a spinning disk against its closed form
-  workflow [options]        the same sweep as a Snakemake workflow, one job a case, here or on Slurm;
-                            options of snakemake, as -j N or --profile scripts/workflow/slurm
   calibrate TARGET [options]
                             find the alpha_crease and beta whose run follows a measured curve;
                             options of scripts/calibrate.py
@@ -78,8 +77,7 @@ verify_packages=(python3-scipy)
 bench_packages=(lammps openmpi-bin valgrind)
 animation_packages=(xvfb libgl1-mesa-dri ffmpeg)
 browser_packages=(chromium chromium-driver python3-selenium)
-sweep_packages=(python3-jinja2)
-workflow_packages=(snakemake)
+sweep_packages=(python3-jinja2 python3-yaml snakemake)
 calibrate_packages=(python3-scipy)
 slurm_packages=(slurmctld slurmd slurm-client munge) # for a test
 coverage_packages=(python3-coverage)
@@ -384,7 +382,7 @@ python_sources() { find "$root/scripts" "$root/tests" "$root/reference" -name '*
 
 format() {
     need "${format_packages[@]}"
-    local -a cpp python shell=("$root"/scripts/*.sh "$root"/scripts/packaging/* "$root/scripts/workflow/slurm/status.sh" "$root/.ci/run")
+    local -a cpp python shell=("$root"/scripts/*.sh "$root"/scripts/packaging/* "$root/.ci/run")
     local -a black=(black -q --config "$root/pyproject.toml") flake8
     mapfile -t cpp < <(cpp_sources)
     mapfile -t python < <(python_sources)
@@ -443,7 +441,7 @@ package() {
     cpack --config "$build/CPackConfig.cmake" -B "$build/package" \
         -D CPACK_DEBIAN_PACKAGE_DEPENDS="$(list "yade (= $yade)" "${run_packages[@]:1}")" \
         -D CPACK_DEBIAN_PACKAGE_RECOMMENDS="$(list "${sail_packages[@]}" "${sweep_packages[@]}" "${calibrate_packages[@]}")" \
-        -D CPACK_DEBIAN_PACKAGE_SUGGESTS="$(list "${workflow_packages[@]}" "${animation_packages[@]}")" >"$build/package.log" ||
+        -D CPACK_DEBIAN_PACKAGE_SUGGESTS="$(list "${animation_packages[@]}")" >"$build/package.log" ||
         { cat "$build/package.log" >&2 && die "package: see above"; }
     say "made $(compgen -G "$build/package/*.deb")"
 }
@@ -452,7 +450,7 @@ take_nothing() { (($# == 0)) || die "$command: unknown option '$1'"; }
 
 command=${1-help}
 shift || true
-[[ -z $installed || $command =~ ^(deploy|report|animate|sail|miura|watch|sweep|case|ikaros|disk|workflow|calibrate|-?-?h(elp)?)$ ]] ||
+[[ -z $installed || $command =~ ^(deploy|report|animate|sail|miura|watch|sweep|case|ikaros|disk|calibrate|-?-?h(elp)?)$ ]] ||
     die "unknown command '$command', or one for the folder of the sources only; yade-membrane help lists those there are"
 [[ -n $installed ]] || run_elsewhere "$@"
 case $command in
@@ -475,7 +473,7 @@ watch)
     run_yade "$root/scripts/deploy.py" --watch "$@"
     ;;
 test)
-    need "${sail_packages[@]}" "${sweep_packages[@]}" "${workflow_packages[@]}" "${calibrate_packages[@]}" "${test_packages[@]}"
+    need "${sail_packages[@]}" "${sweep_packages[@]}" "${calibrate_packages[@]}" "${test_packages[@]}"
     [[ " $* " != *" --full "* ]] || need "${slurm_packages[@]}" "${coverage_packages[@]}"
     [[ " $* " != *" --coverage "* ]] || need "${coverage_packages[@]}"
     compile
@@ -511,7 +509,7 @@ sweep)
     compile
     viewer_if_possible
     set_environment
-    exec python3 "$root/scripts/sweep.py" run "$@"
+    exec python3 "$root/scripts/sweep.py" "$@"
     ;;
 case)
     compile
@@ -548,13 +546,6 @@ ikaros)
     compile
     viewer_if_possible
     run_yade "$root/scripts/ikaros.py" "$@"
-    ;;
-workflow)
-    need "${sweep_packages[@]}" "${workflow_packages[@]}"
-    compile
-    viewer_if_possible
-    set_environment
-    exec python3 "$root/scripts/workflow.py" "$@"
     ;;
 calibrate)
     need "${calibrate_packages[@]}"

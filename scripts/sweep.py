@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Sweeps over alpha_c and beta, by default the paper's Table 2, and makes one report."""
+"""Runs a grid over any parameters of any sail, and makes one report."""
 
 from membrane.cli import run
 

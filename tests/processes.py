@@ -73,7 +73,7 @@ class Halt:
         """Id of a process that has stopped; AssertionError if the command ends before."""
         while process.poll() is None:
             for pid in family(process.pid):
-                if _state(pid) == "T":
+                if state(pid) == "T":
                     return pid
             time.sleep(0.001)
         raise AssertionError(f"it came to its end: {process.communicate()}")
@@ -90,7 +90,7 @@ class Halt:
         self._order.unlink()
 
 
-def _state(pid):
+def state(pid):
     """State of a process by one letter, as ps(1) gives it."""
     try:
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]

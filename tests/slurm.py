@@ -158,8 +158,8 @@ class Slurm:
         return self.run("sinfo", "--noheader", "--format=%T", check=False).split()
 
     def jobs(self):
-        """(id, name, state) of the jobs that wait or run."""
-        lines = self.run("squeue", "--noheader", "--format=%i %j %T").splitlines()
+        """(id, comment, state) of the jobs that wait or run."""
+        lines = self.run("squeue", "--noheader", "--format=%i %k %T").splitlines()
         return [tuple(line.split()) for line in lines]
 
     def cancel_all(self):

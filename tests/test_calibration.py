@@ -136,6 +136,25 @@ class TestTarget(unittest.TestCase):
             found = target.read_target(self.write(text), until=0.0145)
             self.assertEqual(len(found.times), 15)
 
+    def test_any_measure_of_a_kind_of_sail_may_be_the_curve(self):
+        names = ("time", "tip_radius", "spin_rate", "kinetic_energy", "mean_crease_angle")
+        rows = [(1e-3 * i, 0.1 + 1e-3 * i, 60 - i, 1e-3 * i, 0.1 * i) for i in range(20)]
+        path = self.write("\n".join([",".join(names), *(",".join(map(str, r)) for r in rows)]))
+        found = target.read_target(path, sail="sheet")
+        self.assertEqual(set(found.columns), {"tip_radius", "spin_rate", "mean_crease_angle"})
+        found = target.read_target(path, ["kinetic_energy", "spin_rate"], sail="sheet")
+        np.testing.assert_array_equal(found.values, np.array(rows)[:, [3, 2]].T)
+        with self.assertRaisesRegex(BadFile, "no column deployment_rate or phase_difference"):
+            target.read_target(path)
+        for name, most, said in (
+            ("mean_crease_angle", 180, "reaches 180 rad, .* are these degrees"),
+            ("projected_area", 95, "reaches 95, .* are these percent"),
+        ):
+            lines = [f"{i / 1000},{most * i / 19}" for i in range(20)]
+            path = self.write("\n".join([f"time,{name}", *lines]))
+            with self.subTest(name), self.assertRaisesRegex(BadFile, said):
+                target.read_target(path, sail="sheet")
+
     def test_tables_that_are_no_curve_are_refused(self):
         cases = {
             "no column phase_difference": (self.rows(), ["phase_difference"], 1.0),
@@ -143,7 +162,7 @@ class TestTarget(unittest.TestCase):
             "has 6 times .* times are in s": (self.rows(), [], 0.005),
             "line 5, deployment_rate: is .\\?.; must be a finite": (self.rows(row_3="?"), [], 1.0),
             "grow": (self.rows().replace("0.004,", "0.003,"), [], 1.0),
-            "no column phase_difference or deployment_rate": ("time,a\n0,1\n", [], 1.0),
+            "no column deployment_rate or phase_difference": ("time,a\n0,1\n", [], 1.0),
         }
         for said, (text, columns, until) in cases.items():
             with self.assertRaisesRegex(ValueError, said):
@@ -236,6 +255,26 @@ class TestEstimate(unittest.TestCase):
         self.assertLessEqual(known, 2)  # by chance a slope of scatter looks like one
 
 
+class TestOneParameter(unittest.TestCase):
+    """A sheet that spins faster opens faster, in closed form: omega alone is found."""
+
+    def test_it_is_found_where_it_was(self):
+        class Sheet(Sail):
+            def exact(self, point):
+                turned = np.exp(point[0]) * TIMES
+                return np.array([60 / (1 + turned**2), 0.1 + 0.01 * turned**1.5])
+
+        low, high, truth = np.log([[5.0], [50.0], [17.0]])
+        sheet = Sheet(1e-3, np.random.default_rng(3))
+        sheet.points = np.empty((0, 1))
+        values = sheet.run(truth)
+        wanted = target.Target(TIMES, ("spin_rate", "tip_radius"), values, np.full(2, 1e-4))
+        point = search.search(sheet, wanted, low, high)
+        _, found = surface.refine(sheet, wanted, point, low, high)
+        self.assertLess(found.sigma[0], 0.1)
+        self.assertLess(abs(found.point - truth)[0], 3 * found.sigma[0])
+
+
 class TestSearch(unittest.TestCase):
     def test_the_parameters_are_found_in_a_wide_field_with_few_runs(self):
         for seed, truth in enumerate(np.log([[80.0, 30.0], [20.0, 60.0], [300.0, 20.0]])):
@@ -287,6 +326,19 @@ class TestDeployments(unittest.TestCase):
             (curves,) = simulate([[np.log(30.0)]])
         self.assertIsNone(curves)
         self.assertEqual((len(simulate), len(simulate.points)), (1, 0))
+
+    def test_a_run_of_another_sail_gives_its_own_measures(self):
+        times = np.linspace(0.0, 0.004, 5)
+        wanted = target.Target(times, ("spin_rate", "tip_radius"), np.zeros((2, 5)), np.zeros(2))
+        words = ["miura", "--size=0.05", "--air-density=0"]
+        simulate = runs.Deployments(ROOT / "scripts" / "deploy.py", ["omega"], wanted, words)
+        with unittest.mock.patch.dict(os.environ, yade_environment()):
+            slow, fast = simulate([[np.log(30.0)], [np.log(60.0)]])
+        for omega, (spin, radius) in ((30.0, slow), (60.0, fast)):
+            self.assertAlmostEqual(spin[0], omega, delta=1e-3 * omega)
+            self.assertTrue((np.diff(spin) < 0).all())  # it turns the slower the wider it is
+            self.assertTrue((np.diff(radius) > 0).all())
+        self.assertGreater(fast[1][-1], slow[1][-1])
 
 
 class TestKeptRuns(unittest.TestCase):
@@ -372,6 +424,19 @@ class TestCommand(unittest.TestCase):
         self.refused("is chosen here", path, "--duration=2")
         self.refused("no column phase_difference", path, "--column", "phase_difference")
         self.refused("does not vary", path)
+        for words, said in (
+            ("--vary omga 1 2", "--vary omga: must be a parameter of the sail that is a number"),
+            ("--vary crease_law 1 2", "--vary crease_law: must be a parameter"),
+            ("--vary omega 1 fast", "--omega 1 fast: must be numbers"),
+            ("--vary omega 2 1", "--omega 2 1: must be > 0 and grow"),
+            ("--vary omega 1 2 --omega=3", "--omega is chosen here, not by the caller"),
+            ("--vary omega 2 2", "all parameters are held: nothing to find"),
+            ("--vary omega 1 2 --vary beta 1 2 --vary zeta 1 2", "must be one parameter or two"),
+            ("--sail kite", "SAIL is 'kite': must be a .fold or .msh file, or one of "),
+            ("--sail sheet --column deployment_rate", "invalid choice: 'deployment_rate'"),
+            ("--sail miura", "no column tip_radius or projected_area or mean_crease_angle or spin"),
+        ):
+            self.refused(said, path, *words.split())
 
     def test_what_the_scene_refuses_ends_the_search_at_once(self):
         path = scratch() / "line.csv"

@@ -130,8 +130,10 @@ class TestNames(CommandTest):
 
     def test_case_of_such_a_name_in_a_report_is_a_sentence(self):
         sweep = os.fsencode(scratch() / "sweep_of_bad_names")
-        case = os.path.join(sweep, self.BAD + b".part")
+        case = os.path.join(sweep, self.BAD, b"unfinished")
         os.makedirs(case)
+        with open(os.path.join(case, b"begun.json"), "w") as file:
+            file.write("{}")
         done = subprocess.run(
             ["/usr/bin/python3", ROOT / "scripts" / "sweep.py", "report", sweep],
             env=yade_environment(),

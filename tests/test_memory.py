@@ -83,7 +83,7 @@ class TestPictures(unittest.TestCase):
             with self.subTest(alphas=alphas, betas=betas):
                 values = {(float(a), float(b)): a + b for a in range(alphas) for b in range(betas)}
                 words = dict.fromkeys(values, "")
-                figure = self.draw(pictures.plot_swing, {"one": values, "two": values}, words)
+                figure = self.draw(pictures.plot_maps, {"one": values, "two": values}, words)
                 self.assertLess(max(figure.get_size_inches()), 40)
                 panel = figure.axes[0]
                 many = max(alphas, betas) > pictures.MANY

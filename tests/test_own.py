@@ -4,14 +4,14 @@
 import json
 import os
 import unittest
+from contextlib import suppress
 from pathlib import Path
 
 from membrane.files import replace_text
 from membrane.parameters import SailParameters
 from membrane.results import own
-from membrane.results.case_folder import part_of
 from membrane.results.output import VtkSeries
-from membrane.results.unfinished import RESULTS, UNFINISHED, new_results
+from membrane.results.unfinished import RESULT, RESULTS, SAVED, UNFINISHED, new_results
 from membrane.run.case import run_case
 from support import scratch
 
@@ -86,7 +86,10 @@ class TestFolders(OwnTest):
             (ours / "shapes").mkdir()
             (ours / "shapes" / "link").symlink_to(others)
         self.stays(lambda: self.hold(ours), f"{ours}/shapes/link is a symbolic link")
-        with own.held(ours, links={"shapes/link"}):
+        (ours / "shapes" / "link").unlink()
+        with own.held(ours):
+            (ours / "shapes" / "link").symlink_to(others)
+            (ours / "link").symlink_to(others)
             own.remove(ours)
         self.assertEqual(found(self.folder), {"others": "", "others/chapter1.txt": "precious"})
 
@@ -126,15 +129,48 @@ class TestFolders(OwnTest):
 class TestCommands(OwnTest):
     """Each is refused before anything is built."""
 
-    def test_folder_beside_that_of_a_case_survives(self):
-        self.precious(part_of(self.folder / "thesis"))
-        self.stays(
-            lambda: run_case(SailParameters(), self.folder / "thesis"), "thesis.part was not"
-        )
-        (self.folder / "link.part").symlink_to(part_of(self.folder / "thesis"))
-        self.stays(lambda: run_case(SailParameters(), self.folder / "link"), "link.part was not")
+    def case(self, name):
+        """What runs a case in a folder."""
+        return lambda: run_case(SailParameters(), self.folder / name)
+
+    def test_unfinished_of_another_in_the_folder_of_a_case_survives(self):
+        (self.folder / "thesis").mkdir()
+        self.precious(self.folder / "thesis" / UNFINISHED)
+        self.stays(self.case("thesis"), f"thesis/{UNFINISHED} was not made")
+        (self.folder / "link").mkdir()
+        (self.folder / "link" / UNFINISHED).symlink_to(self.folder / "thesis" / UNFINISHED)
+        self.stays(self.case("link"), f"link/{UNFINISHED} was not made")
         (self.folder / "dangling").symlink_to("nowhere")
-        self.stays(lambda: run_case(SailParameters(), self.folder / "dangling"), "is missing")
+        self.stays(self.case("dangling"), "is missing; choose another folder")
+
+    def test_case_does_not_mix_with_what_is_in_its_folder(self):
+        self.precious(self.folder / "thesis")
+        self.stays(self.case("thesis"), "thesis/case.json: is missing; choose another folder")
+        with new_results(self.folder / "run") as part:
+            (part / "history.csv").write_text("ours")
+        self.stays(self.case("run"), "run/case.json: is missing; choose another folder")
+        with suppress(ZeroDivisionError), new_results(self.folder / "run") as part:
+            (part / "history.csv").write_text("half")
+            1 / 0
+        self.stays(self.case("run"), "run holds a run: choose another folder")
+
+    def test_case_is_no_run_whose_results_may_be_replaced(self):
+        with new_results(self.folder, own.CASE, self.ABOUT) as part:
+            (part / RESULT).write_text("ours")
+        self.refused(f"{self.folder} holds a case: choose another folder")
+
+    def test_case_that_can_go_on_is_not_lost_to_another_run(self):
+        with suppress(ZeroDivisionError), new_results(self.folder, own.CASE, self.ABOUT) as part:
+            (part / SAVED).mkdir()
+            1 / 0
+        self.refused(f"{part} holds a case that can go on; to lose what it has done, remove {part}")
+        for change in ({"sail": "miura"}, {"parameters": {"beta": 4.0}}, {"sum_of_file": "ab"}):
+            with self.subTest(**change):
+                self.refused("holds another case: ", own.CASE, {**self.ABOUT, **change})
+        with new_results(self.folder, own.CASE, {**self.ABOUT, "versions": {"yade": "2"}}) as part:
+            self.assertFalse((part / SAVED).exists())
+
+    ABOUT = {"sail": "sheet", "parameters": {"beta": 3.0}, "versions": {"yade": "1"}}
 
     def test_unfinished_of_another_survives_and_what_a_link_of_that_name_leads_to(self):
         others = self.precious(self.folder / "others")
@@ -145,9 +181,9 @@ class TestCommands(OwnTest):
         others.rename(self.folder / UNFINISHED)
         self.refused(f"{UNFINISHED} was not made by this version")
 
-    def refused(self, sentence):
+    def refused(self, sentence, *about):
         def work():
-            with new_results(self.folder):
+            with new_results(self.folder, *about):
                 self.fail("not refused")
 
         self.stays(work, sentence)
@@ -192,10 +228,8 @@ class TestCommands(OwnTest):
         with new_results(self.folder) as part:
             (part / "history.csv").write_text("ours")
         (self.folder / "sail.gif").write_text("of the user")
-        self.stays(
-            lambda: own.add_to_list(self.folder, own.RUN, ["report.html", "sail.gif"]), "sail.gif"
-        )
-        own.add_to_list(self.folder, own.RUN, ["report.html"])
+        self.stays(lambda: own.add_to_list(self.folder, ["report.html", "sail.gif"]), "sail.gif")
+        own.add_to_list(self.folder, ["report.html"])
         (self.folder / "report.html").write_text("made later")
         (self.folder / "sail.gif").unlink()
         with new_results(self.folder) as part:

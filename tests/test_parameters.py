@@ -7,11 +7,9 @@ import io
 import json
 import re
 import subprocess
-import sys
 import unittest
 from dataclasses import fields
 from math import inf, pi
-from unittest import mock
 
 import numpy as np
 from membrane.cli.options import add_arguments, count, from_arguments, parse
@@ -75,18 +73,20 @@ class TestParameters(unittest.TestCase):
     def test_command_line_wins_over_a_file_and_that_over_defaults(self):
         file = scratch() / "some.json"
         file.write_text('{"parameters": {"beta": 1.0, "zeta": 0.1, "duration": 3.0}}')
-        root = argparse.ArgumentParser()
-        command = root.add_subparsers().add_parser("run")
-        words = ["prog", "run", "--parameters", str(file), "--zeta", "0.2"]
-        with mock.patch.object(sys, "argv", words):
-            found = parse(
-                command,
-                several={"beta": (3.0, 30.0)},
-                defaults={"duration": 2.0, "omega": 5.0},
-                root=root,
-            )
-        self.assertEqual((found.beta, found.zeta), ([3.0, 30.0], 0.2))
-        self.assertEqual((found.duration, found.omega, found.gamma), (3.0, 5.0, 100.0))
+        words = ["--parameters", str(file), "--zeta", "0.2"]
+        found = parse(argparse.ArgumentParser(), words=words)
+        self.assertEqual((found.beta, found.zeta), (1.0, 0.2))
+        self.assertEqual((found.duration, found.gamma), (3.0, 100.0))
+
+    def test_where_several_values_may_be_given_only_those_given_are_there(self):
+        parser = argparse.ArgumentParser()
+        add_arguments(parser, several=True)
+        self.assertEqual(vars(parser.parse_args([])), {})
+        words = "--beta 3 30 --force-time-step --crease-law paper --fold-lines 3e0".split()
+        expected = {"beta": [3.0, 30.0], "force_time_step": [], "crease_law": ["paper"]}
+        self.assertEqual(vars(parser.parse_args(words)), {**expected, "fold_lines": [3]})
+        found = parser.parse_args(["--force-time-step", "true", "false"])
+        self.assertEqual(found.force_time_step, [True, False])
 
     def test_table_overrides_the_command_line(self):
         found = from_arguments(self.parse("--beta", "3"), {"beta": 0.0, "zeta": 0.1})
@@ -180,28 +180,23 @@ class TestParameters(unittest.TestCase):
             if item.type is float and item.metadata["unit"] != "-":
                 self.assertIn(f"[{item.metadata['unit']}]", text)
 
-    def test_help_tells_sources_and_the_defaults_of_this_command(self):
-        parser = argparse.ArgumentParser()
-        add_arguments(parser, several={"beta": (3.0, 30.0)}, defaults={"duration": 1.2})
-        text = " ".join(parser.format_help().split())
-        for source in ("Table 1", "Table 2", "assumed", "run"):
-            self.assertIn(f"parameters, {source}:", text)
-        self.assertIn("time to run after the release [s] (>= 0; default 1.2)", text)
-        self.assertIn("crease stiffness; 0: no creases (>= 0; one or more; default 3 30)", text)
-        found = parser.parse_args([])
-        self.assertEqual((found.beta, found.duration, found.zeta), ([3.0, 30.0], 1.2, 0.02))
+    def test_help_tells_sources_and_defaults(self):
+        for several in (False, True):
+            parser = argparse.ArgumentParser()
+            add_arguments(parser, several=several)
+            text = " ".join(parser.format_help().split())
+            for source in ("Table 1", "Table 2", "assumed", "run"):
+                self.assertIn(f"parameters, {source}:", text)
+            self.assertIn("time to run after the release [s] (>= 0; default 1)", text)
+            self.assertIn("crease stiffness; 0: no creases (>= 0; default 30)", text)
 
 
 class TestBatch(unittest.TestCase):
-    @long
-    def test_each_row_of_a_batch_table_leaves_its_results(self):
-        folder = scratch() / "batch"
+    def run_table(self, name, text):
+        """Summaries of a batch of yade-batch by the rows' names."""
+        folder = scratch() / name
         folder.mkdir()
-        short = "0.002 0.001 0.1"
-        (folder / "table.txt").write_text(
-            "description duration shapes_interval spin_up_tolerance beta\n"
-            f"soft {short} 3\nstiff {short} 30\n"
-        )
+        (folder / "table.txt").write_text(text)
         done = subprocess.run(
             ["yade-batch", "-j1", "--job-threads=1", "table.txt", ROOT / "scripts" / "deploy.py"],
             cwd=folder,
@@ -211,10 +206,27 @@ class TestBatch(unittest.TestCase):
             timeout=300,
         )
         self.assertNotIn("FAILED", done.stdout + done.stderr)
-        for row, beta in (("soft", 3.0), ("stiff", 30.0)):
-            summary = json.loads((folder / "out" / row / "summary.json").read_text())
-            self.assertEqual(summary["parameters"]["beta"], beta)
-            self.assertEqual(summary["parameters"]["duration"], 0.002)
+        found = (folder / "out").glob("*/summary.json")
+        return {path.parent.name: json.loads(path.read_text()) for path in found}
+
+    @long
+    def test_each_row_of_a_batch_table_leaves_its_results(self):
+        short, names = "0.002 0.001 0.1", "description duration shapes_interval spin_up_tolerance"
+        rows = f"{names} beta\nsoft {short} 3\nstiff {short} 30\n"
+        found = self.run_table("batch", rows)
+        betas = {name: summary["parameters"]["beta"] for name, summary in found.items()}
+        self.assertEqual(betas, {"soft": 3.0, "stiff": 30.0})
+        for summary in found.values():
+            self.assertEqual(
+                (summary["sail"], summary["parameters"]["duration"]), ("square", 0.002)
+            )
+
+    @long
+    def test_a_column_names_the_sail(self):
+        rows = "description sail duration omega\none 'miura' 0.002 40\ntwo 'heliogyro' 0.002 9\n"
+        found = self.run_table("batch_of_sails", rows)
+        sails = {name: (s["sail"], s["parameters"]["omega"]) for name, s in found.items()}
+        self.assertEqual(sails, {"one": ("miura", 40.0), "two": ("heliogyro", 9.0)})
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ QUICK = True
 
 SCRIPTS = ROOT / "scripts"
 ROOMS = ("", "mesh", "scene", "results", "view", "run", "study", "cli")  # the first: the ground
-PLAIN_COMMANDS = "errors|options|calibrate|sweep|workflow"
+PLAIN_COMMANDS = "errors|options|calibrate|sweep"
 WITH_YADE = "scene|run.(case|checkpoint|driver|last_good|record)|view.window"
 WITH_YADE += "|study.(benchmarks|chart|disk|parts|sources|stability|verification)"
 WITH_YADE += f"|cli.(?!{PLAIN_COMMANDS})"  # or with the sources

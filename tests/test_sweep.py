@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Sweeps and cases: whole or not at all, killed at any moment and gone on with, byte for byte."""
 
+import argparse
 import csv
 import json
 import os
@@ -10,23 +11,30 @@ import resource
 import shutil
 import signal
 import subprocess
+import time
 import unittest
 from dataclasses import replace
 from functools import lru_cache, partial
 from pathlib import Path
 
 import numpy as np
+from membrane.cli.options import chosen_sail, from_arguments, parse
 from membrane.files import replacing, write_json
-from membrane.parameters import TABLE_2_CASES, SailParameters
-from membrane.results.case_folder import COMPLETE, DAMAGED, DIVERGED, FAILED, KILLED, MISSING, look
-from membrane.results.case_folder import LAST_GOOD, part_of
+from membrane.measures import SQUARE_OUTCOMES
+from membrane.parameters import SailParameters
+from membrane.results.case_folder import COMPLETE, DAMAGED, DIVERGED, FAILED, KILLED, LAST_GOOD
+from membrane.results.case_folder import MISSING, Status, identity, look
+from membrane.results.unfinished import UNFINISHED
 from membrane.results.history import read_history
 from membrane.results.output import HistoryWriter
-from membrane.study.sweep import grid, results
+from membrane.run.sails import SAILS
+from membrane.run.sails.sheet import PatternParameters
+from membrane.study.sweep import config, grid, jobs, results
+from membrane.study.verification import paper
 from membrane.view import report
-from processes import Halt, family, kill, send
-from support import ROOT, long, scratch, yade_environment
-from yade import utils
+from processes import Halt, family, kill, send, state
+from slurm import Slurm
+from support import ROOT, CommandTest, long, scratch, yade_environment
 
 
 CASE, SWEEP = ROOT / "scripts" / "case.py", ROOT / "scripts" / "sweep.py"
@@ -35,7 +43,17 @@ SHORT = [*COARSE, "--duration", "0.02", "--spin-up-tolerance", "1e-3"]
 TOO_LONG = [*COARSE, "--duration", "0.2", "--dt", "2.3e-5", "--force-time-step"]
 TOO_LONG += ["--spin-up-tolerance", "1e-3"]
 OFTEN = ["--checkpoint-every", "0"]
-WALL_TIME, BATCH = "wall_time.json", "batch"  # what may differ
+WALL_TIME = "wall_time.json"  # what may differ, as what is below jobs.WORK
+
+
+def part_of(folder):
+    """Where a case runs until it is finished."""
+    return folder / UNFINISHED
+
+
+def has_result(folder):
+    """Whether there is any result of a case."""
+    return folder.is_dir() and os.listdir(folder) != [UNFINISHED]
 
 
 def start(command, halt):
@@ -56,7 +74,7 @@ def start_case(folder, *options, halt=None):
 
 
 def start_sweep(folder, *options, halt=None):
-    return start(["/usr/bin/python3", SWEEP, "run", "--out", folder, *options], halt)
+    return start(["/usr/bin/python3", SWEEP, *options, "--out", folder], halt)
 
 
 def tree(folder):
@@ -66,7 +84,7 @@ def tree(folder):
     return {
         str(name): path.read_bytes()
         for name, path in names.items()
-        if name.name != WALL_TIME and name.parts[0] != BATCH
+        if name.name != WALL_TIME and name.parts[0] != jobs.WORK
     }
 
 
@@ -91,7 +109,7 @@ def zero(path):
 
 def kill_at(number, run):
     """Kill a command, which `run(halt=...)` starts, at the n-th change of an unfinished case."""
-    halt = Halt(r"\.part/", number)
+    halt = Halt(f"{UNFINISHED}/", number)
     process = run(halt=halt)
     halt.wait(process)
     kill(process)
@@ -139,7 +157,7 @@ class TestCase(SweepTest):
         run = partial(start_case, folder, *TOO_LONG, *OFTEN)
         for number, damage in zip(random.Random(7).sample(range(100, 400), 2), (cut, zero)):
             kill_at(number, run)
-            self.assertFalse(folder.exists())
+            self.assertFalse(has_result(folder))
             saved = (part_of(folder) / "checkpoint").iterdir()
             damage(max(path for path in saved if path.name.isdecimal()) / "scene.yade.gz")
             damage(part_of(folder) / "history.csv")
@@ -158,7 +176,7 @@ class TestCase(SweepTest):
         process = start_case(folder, *options, *OFTEN, halt=halt)
         halt.wait_until(process, lambda: rows(part_of(folder)) >= first + 5)
         kill(process)
-        self.assertFalse(folder.exists())
+        self.assertFalse(has_result(folder))
         self.completes(start_case(folder, *options, *OFTEN))
         self.same(quiet, folder)
         self.assertEqual((folder / "report.html").exists(), report.TEMPLATE.is_file())
@@ -176,7 +194,7 @@ class TestCase(SweepTest):
             process = start_case(folder, *options, halt=halt)
             halt.wait_until(process, reached)
             kill(process)
-            self.assertFalse(folder.exists())
+            self.assertFalse(has_result(folder))
         self.completes(start_case(folder, *options))
         self.same(quiet, folder)
 
@@ -190,7 +208,7 @@ class TestCase(SweepTest):
         self.completes(start_case(folder, *SHORT, "--no-pictures"))
         after = {path: path.stat().st_mtime_ns for path in folder.rglob("*")}
         gone = {path.name for path in before.keys() - after.keys()}
-        self.assertEqual(gone, {"begun.json", "lock"})
+        self.assertEqual(gone, {UNFINISHED, "begun.json", "lock"})
         self.assertLessEqual(after.items(), before.items())
         self.assertFalse(part_of(folder).exists())
 
@@ -232,7 +250,7 @@ class TestCase(SweepTest):
         process = start_case(folder, *COARSE, "--dt", "1e-4")
         said, _ = process.communicate()
         self.assertNotEqual(process.returncode, 0)
-        self.assertFalse(folder.exists())
+        self.assertFalse(has_result(folder))
         status = look(folder)
         self.assertEqual(status.state, FAILED)
         self.assertRegex(status.reason, "dt = 0.0001 s must be <= .*critical")
@@ -255,17 +273,20 @@ class TestSweep(SweepTest):
         self.assertRegex(self.said, r"\d of 2 cases done, \d running")
         with open(self.folder / "cases.csv", newline="") as file:
             rows = list(csv.DictReader(file))
-        self.assertEqual(
-            [(r["alpha_crease"], r["beta"]) for r in rows], [("10", "3"), ("100", "3")]
-        )
+        self.assertEqual([row["alpha_crease"] for row in rows], ["10", "100"])
         for row in rows:
             summary = json.loads((self.folder / "cases" / row["case"] / "summary.json").read_text())
             self.assertEqual(row["outcome"], "complete")
             self.assertEqual(str(summary["parameters"]["alpha_crease"]), row["alpha_crease"] + ".0")
-            self.assertEqual(float(row["final_rate"]), summary["measures"]["final_deployment_rate"])
+            self.assertEqual(summary["parameters"]["beta"], 3)
+            for outcome in SQUARE_OUTCOMES:
+                value = summary["measures"][outcome.name]
+                unit, factor = outcome.shown or (outcome.unit, 1)
+                told = row[outcome.name if unit == "-" else f"{outcome.name}_{unit}"]
+                self.assertEqual(told, "" if value is None else str(factor * value))
             self.assertEqual(row["period_s"], "")  # too short a run to see it
         page = (self.folder / "report.html").read_text()
-        for name in ("deployment_rate.png", "phase_difference.png", "swing.png", "cases.csv"):
+        for name in ("deployment_rate.png", "phase_difference.png", "cases.csv"):
             self.assertIn(f'"{name}"', page)
             self.assertGreater((self.folder / name).stat().st_size, 200)
 
@@ -278,21 +299,21 @@ class TestSweep(SweepTest):
         self.assertRegex(said, "killed before: it was stopped from outside")
         self.same(self.folder, folder)
 
-    def test_yade_batch_killed_alone_leaves_the_same_files(self):
-        folder = scratch() / "killed_batch"
+    def test_snakemake_killed_alone_leaves_the_same_files(self):
+        folder = scratch() / "killed_snakemake"
         halt = Halt("checkpoint/")
         process = start_sweep(folder, *self.OPTIONS, halt=halt)
         halt.wait(process)
         halt.lift()
-        batch, *jobs = family(process.pid)[1:]
-        os.kill(batch, signal.SIGKILL)  # its jobs go on
+        snakemake, *left = family(process.pid)[1:]
+        os.kill(snakemake, signal.SIGKILL)  # its jobs go on
         said = ""
         while "it is still running" not in said:
             line = process.stdout.readline()
             self.assertNotEqual(line, "", f"it came to its end: {said}")
             said += line
         self.assertTrue(said.endswith("; it runs again\n"), said)
-        for job in jobs:
+        for job in left:
             send(job, signal.SIGCONT)
         self.completes(process)
         self.same(self.folder, folder)
@@ -434,6 +455,14 @@ DAMAGES = {
     "parameters a list": (given("parameters", [1]), "case.json: parameters: must be an object"),
     "a parameter a list": (given("parameters", {"beta": [3]}), "case.json: parameters.beta"),
     "a parameter out of range": (given("parameters", {"beta": -3}), "beta = -3 must be >= 0"),
+    "another sail": (given("sail", "kite"), "case.json: sail: is 'kite'; must be one of "),
+    "units missing": (lambda f: (f / "history.units.json").unlink(), "history.units.json"),
+    "summary missing": (lambda f: (f / "summary.json").unlink(), "summary.json"),
+    "summary {}": (filled("summary.json", "{}"), "summary.json: measures: must be an object"),
+    "a measure a word": (
+        filled("summary.json", '{"measures": {"period": "long"}}'),
+        "summary.json: measures.period: is 'long'; must be a number or null",
+    ),
     "diverged without a reason": (given("outcome", "diverged"), "case.json: reason"),
     "diverged at no time": (
         lambda f: changed(
@@ -444,24 +473,30 @@ DAMAGES = {
 }
 
 
+def write_case(folder, p, rows=101):
+    """A complete case with curves of a swing, without running it."""
+    folder.mkdir(parents=True)
+    about = {"outcome": COMPLETE, **identity(p), "versions": {"yade": "2023.02a"}}
+    write_json(folder / "case.json", about)
+    units = {"time": "s", "deployment_rate": "-", "phase_difference": "rad"}
+    time = np.linspace(0, p.duration, rows)
+    swing = -np.sin(50 * time) * p.alpha_crease / 100
+    columns = dict(zip(units, (time, 10 * time, swing)))
+    with HistoryWriter(folder / "history.csv", units) as history:
+        for row in zip(*columns.values()):
+            history.write(dict(zip(units, row)))
+    found = {outcome.name: outcome.of(columns) for outcome in SQUARE_OUTCOMES}
+    write_json(folder / "summary.json", {"measures": found})
+
+
 @lru_cache(maxsize=None)
 def two_cases():
     """Folder of a planned sweep of two cases with curves of a swing, without running them."""
-    folder = scratch() / "two_cases"
-    cases = grid.grid(SailParameters(duration=0.1), [10.0, 100.0], [3.0])
+    folder, base = scratch() / "two_cases", {"beta": 3.0, "duration": 0.1}
+    cases = grid.grid(SailParameters, {"alpha_crease": [10.0, 100.0]}, base)
     grid.plan(folder, cases)
     for name, p in cases.items():
-        place = folder / grid.CASES / name
-        place.mkdir()
-        write_json(
-            place / "case.json",
-            {"outcome": COMPLETE, "parameters": p.as_dict(), "versions": {"yade": "2023.02a"}},
-        )
-        units = {"time": "s", "deployment_rate": "-", "phase_difference": "rad"}
-        with HistoryWriter(place / "history.csv", units) as history:
-            for now in np.linspace(0, p.duration, 101).tolist():
-                swing = -np.sin(50 * now) * p.alpha_crease / 100
-                history.write({"time": now, "deployment_rate": 10 * now, "phase_difference": swing})
+        write_case(folder / grid.CASES / name, p)
     return folder
 
 
@@ -486,7 +521,7 @@ class TestReport(SweepTest):
         """A new copy of two_cases() and the folder of its first case."""
         folder = scratch() / name
         shutil.copytree(two_cases(), folder)
-        return folder, folder / grid.CASES / "alpha_crease_10-beta_3"
+        return folder, folder / grid.CASES / "alpha_crease_10"
 
     def refused(self, folder, *parts):
         """`sweep.py report` and `sweep.py run` end by one sentence and change nothing."""
@@ -524,14 +559,17 @@ class TestReport(SweepTest):
                     row = next(csv.DictReader(file))
                 self.assertEqual((row["case"], row["outcome"]), (case.name, DAMAGED))
                 self.assertIn(reason, row["reason"])
-                self.assertEqual(row["final_rate"], "")
+                self.assertEqual(row["final_deployment_rate"], "")
                 page = (folder / "report.html").read_text()
                 self.assertIn("1 damaged", page)
                 self.assertIn('"deployment_rate.png"', page)
 
     def test_case_of_other_parameters_than_planned_is_not_complete(self):
         folder, case = self.copy("of_another")
-        changed(folder / "sweep.json", lambda plan: plan["cases"][case.name].update(duration=0.2))
+        changed(
+            folder / "sweep.json",
+            lambda plan: plan["cases"][case.name]["parameters"].update(duration=0.2),
+        )
         status, said = self.report(folder)
         self.assertEqual(status, 1)
         self.assertIn("1 of 2 cases are complete", said)
@@ -543,7 +581,7 @@ class TestReport(SweepTest):
                 folder, case = self.copy(f"unfinished_{number}")
                 shutil.rmtree(case)
                 part = part_of(case)
-                part.mkdir()
+                part.mkdir(parents=True)
                 (part / "begun.json").write_text(text)
                 (part / "failure.json").write_text(text)
                 status, said = self.report(folder)
@@ -560,7 +598,10 @@ class TestReport(SweepTest):
             '{"cases": [1]}': "cases: must be an object, not a list of 1",
             '{"cases": {"a": [1]}}': "cases.a: must be an object",
             '{"cases": {"../a": {}}}': "cases.../a: is no name of a folder",
-            '{"cases": {"a": {"beta": "x"}}}': "cases.a: beta = 'x' must be a number",
+            '{"cases": {"a": {"parameters": {}, "sail": []}}}': "cases.a.sail: is a list of 0;",
+            '{"cases": {"a": {"parameters": {"beta": "x"}, "sail": "square"}}}': (
+                "cases.a.parameters: beta = 'x' must be a number"
+            ),
         }
         for number, (text, reason) in enumerate(plans.items()):
             with self.subTest(text):
@@ -619,13 +660,13 @@ class TestReport(SweepTest):
     def test_holes_are_told_with_their_reasons(self):
         folder = scratch() / "holes"
         parameters = json.loads((diverged() / "case.json").read_text())["parameters"]
-        base = SailParameters(**parameters)
-        cases = grid.grid(base, [10.0, 1000.0], [3.0, 30.0])
+        axes = {"alpha_crease": [10.0, 1000.0], "beta": [3.0, 30.0]}
+        cases = grid.grid(SailParameters, axes, parameters)
         grid.plan(folder, cases)
         here = folder / grid.CASES
         shutil.copytree(diverged(), here / "alpha_crease_1000-beta_30")
         failed = part_of(here / "alpha_crease_10-beta_3")
-        failed.mkdir()
+        failed.mkdir(parents=True)
         (failed / "failure.json").write_text('{"reason": "a <b>reason</b>"}')
         (part_of(here / "alpha_crease_10-beta_30") / "checkpoint").mkdir(parents=True)
         status, said = self.report(folder)
@@ -659,18 +700,37 @@ class TestReport(SweepTest):
 
     def test_large_grid_is_drawn_in_panels(self):
         folder = scratch() / "large"
-        content = json.loads((diverged() / "case.json").read_text())
-        alphas = (1.0, 10.0, 100.0, 1e3, 1e4)
-        for name, p in grid.grid(SailParameters(), alphas, [0.0, 3.0, 30.0]).items():
-            (folder / name).mkdir(parents=True)
-            shutil.copy(diverged() / "history.csv", folder / name)
-            told = {**content, "outcome": "complete", "parameters": p.as_dict()}
-            (folder / name / "case.json").write_text(json.dumps(told))
+        axes = {"alpha_crease": [1.0, 10.0, 100.0, 1e3, 1e4], "beta": [0.0, 3.0, 30.0]}
+        for name, p in grid.grid(SailParameters, axes).items():
+            write_case(folder / name, p)
         status, said = self.report(folder)
         self.assertEqual(status, 0, said)
         self.assertIn("15 of 15 cases are complete", said)
-        for name in ("deployment_rate.png", "phase_difference.png", "swing.png"):
+        page = (folder / "report.html").read_text()
+        self.assertIn("Sweep over alpha_crease and beta", page)
+        for name in ("deployment_rate.png", "phase_difference.png", "maps.png"):
+            self.assertIn(f'"{name}"', page)
             self.assertEqual((folder / name).read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+
+    def test_grid_of_other_numbers_and_of_words_is_drawn_as_far_as_it_can_be(self):
+        for maps, axes in (
+            (True, {"omega": [10.0, 20.0], "fold_lines": [3, 7]}),
+            (False, {"crease_law": ["paper", "conservative"], "omega": [10.0, 20.0]}),
+            (False, {"omega": [10.0, 20.0], "beta": [3.0, 30.0], "zeta": [0.0, 0.1]}),
+        ):
+            with self.subTest(axes=list(axes)):
+                folder = scratch() / f"grid_of_{'_'.join(axes)}"
+                for name, p in grid.grid(SailParameters, axes).items():
+                    write_case(folder / name, p)
+                status, said = self.report(folder)
+                self.assertEqual(status, 0, said)
+                with open(folder / "cases.csv", newline="") as file:
+                    rows = list(csv.DictReader(file))
+                found = {name: {row[name] for row in rows} for name in axes}
+                self.assertEqual(found, {n: set(map(grid.text, v)) for n, v in axes.items()})
+                page = (folder / "report.html").read_text()
+                for name, drawn in (("phase_difference.png", True), ("maps.png", maps)):
+                    self.assertEqual(f'"{name}"' in page, drawn)
 
     def test_case_that_has_a_page_is_linked_to_it(self):
         folder, case = self.copy("with_a_page")
@@ -691,51 +751,70 @@ class TestReport(SweepTest):
 
 class TestGrid(unittest.TestCase):
     def test_default_grid_is_that_of_table_2(self):
-        cases = grid.grid(SailParameters(), **TABLE_2_CASES)
+        cases = grid.grid(SailParameters, {})
         found = {(p.alpha_crease, p.beta) for p in cases.values()}
-        self.assertEqual(found, {(a, b) for a in (100, 1000) for b in (0, 3, 30)})
+        self.assertEqual(found, {(a, b) for a in paper.ALPHA_CREASE for b in paper.BETA})
+        self.assertEqual(len(cases), len(found))
         for p in cases.values():
-            self.assertEqual(replace(p, alpha_crease=1000.0, beta=30.0), SailParameters())
+            self.assertGreaterEqual(p.duration, 1.2)  # to see the lead that follows the lag
+            usual = replace(p, alpha_crease=1000.0, beta=30.0, duration=1.0)
+            self.assertEqual(usual, SailParameters())
+
+    def test_several_values_are_an_axis_and_single_ones_are_shared(self):
+        given = {"omega": [15.0, 20.0], "beta": [3.0], "crease_law": ["paper", "conservative"]}
+        cases = grid.grid(SailParameters, given, {"zeta": 0.1, "beta": 30.0})
+        self.assertEqual(len(cases), 4)
+        for name, p in cases.items():
+            self.assertEqual(name, f"omega_{p.omega:g}-crease_law_{p.crease_law}")
+            self.assertEqual((p.beta, p.zeta, p.duration), (3.0, 0.1, 1.0))
 
     def test_names_tell_close_values_apart(self):
-        self.assertEqual(len(grid.grid(SailParameters(), [1e-9, 1.0, 1 + 1e-15], [0.0])), 3)
+        close = {"alpha_crease": [1e-9, 1.0, 1 + 1e-15]}
+        self.assertEqual(len(grid.grid(SailParameters, close)), 3)
+        files = {"file": ["a/b.fold", "a_b.fold"]}
+        with self.assertRaisesRegex(ValueError, "two cases would have one name"):
+            grid.grid(PatternParameters, files)
 
     def test_value_given_twice_or_out_of_range_is_refused(self):
-        with self.assertRaisesRegex(ValueError, "beta: 3 3: a value is given twice"):
-            grid.grid(SailParameters(), [10.0], [3.0, 3.0])
-        with self.assertRaisesRegex(ValueError, "beta = -1"):
-            grid.grid(SailParameters(), [10.0], [-1.0])
+        for given, sentence in (
+            ({"alpha_crease": [10.0], "beta": [3.0, 3.0]}, "beta: 3 3: a value is given twice"),
+            ({"beta": [-1.0, 3.0]}, "beta = -1"),
+            ({"zeta": [-1.0]}, "zeta = -1"),
+        ):
+            with self.assertRaisesRegex(ValueError, sentence):
+                grid.grid(SailParameters, given)
+        with self.assertRaisesRegex(ValueError, "give several values of a parameter"):
+            grid.grid(PatternParameters, {"omega": [10.0]})
 
-    def test_table_gives_yade_batch_the_same_parameters(self):
-        base = SailParameters(dt=1e-5 / 3, path="law2", force_time_step=True, gravity=0.0)
-        cases = grid.grid(base, [0.1, 1e3], [1 / 3])
-        own = {name: {"out": f"../{name}"} for name in cases}
-        path = scratch() / "table.txt"
-        path.write_text(grid.table(cases, own))
-        rows = utils.TableParamReader(str(path)).paramDict()
-        self.assertEqual(len(rows), 2)
-        for row in rows.values():
-            name = row.pop("description")
-            values = {column: eval(value) for column, value in row.items()}
-            self.assertEqual(values.pop("out"), f"../{name}")
-            self.assertEqual(replace(SailParameters(), **values), cases[name])
+    def test_words_of_a_case_ask_for_its_parameters(self):
+        for p in (
+            SailParameters(),
+            SailParameters(dt=1e-5 / 3, path="law2", force_time_step=True, gravity=0.0, beta=1 / 3),
+            PatternParameters(file="a b.fold", flat=True, poisson=-1e-7),
+            SAILS["ikaros"].parameters(spin=2.7, sun=30.0),
+            SAILS["miura"].parameters(file="other.fold", omega=0.1 + 0.2),
+        ):
+            kind, words = chosen_sail(grid.case_words(p))
+            parser = argparse.ArgumentParser()
+            self.assertEqual(from_arguments(parse(parser, kind, words), kind=kind), p)
 
 
 class TestMeasures(unittest.TestCase):
     def measure(self, until):
-        """Measures of a tip that lags by 30 degrees and then leads, with a period of 2 s."""
+        """Outcomes of tips that lag by 30 degrees and then lead, with a period of 2 s."""
         time = np.linspace(0, until, 1001)
         columns = {
             "time": time,
             "phase_difference": -np.radians(30) * np.sin(np.pi * time),
             "deployment_rate": time / until,
         }
-        return results.measure(columns)
+        case = Status(Path(), COMPLETE, measures={o.name: o.of(columns) for o in SQUARE_OUTCOMES})
+        return {o.name: results.measured(case, o) for o in SQUARE_OUTCOMES}
 
     def test_swing_of_a_known_curve(self):
         found = self.measure(2.0)
         self.assertAlmostEqual(found["amplitude"], 30, places=6)
-        self.assertAlmostEqual(found["time_of_amplitude"], 0.5)
+        self.assertAlmostEqual(found["time_of_largest_lag"], 0.5)
         self.assertAlmostEqual(found["period"], 2)
         self.assertAlmostEqual(found["time_of_rate_0.9"], 1.8, delta=0.003)
 
@@ -746,6 +825,285 @@ class TestMeasures(unittest.TestCase):
         found = self.measure(0.4)
         self.assertIsNone(found["amplitude"])
         self.assertIsNone(found["period"])
+
+
+# What a file of configuration holds, and parts of what must be said of it.
+BAD = {
+    "": "is empty",
+    "[1]": "must hold names with values",
+    "grid: [": "line 1, column 8: is no YAML",
+    "when: 2020-13-45": "is no YAML",
+    "grid: [1]": "grid: must be names with values, not a list of 1",
+    "grid: {beta: []}": "--beta: expected at least one argument",
+    "grid: {beta: [3, 3.0]}": "beta: 3 3: a value is given twice",
+    "grid: {beta: [-3]}": "beta = -3.0 must be >= 0",
+    "grid: {beta: [.nan]}": "beta = nan must be >= 0",
+    "grid: {beta: [[3]]}": "--beta: must be a number, not '[3]'",
+    "grid: {bta: [3]}": "unrecognized arguments: --bta 3",
+    "grid: {omega: [15], omega: [20]}": "omega: is given twice",
+    "grid: {omega: [15]}\noptions: {omega: 20}": "omega: is given twice",
+    "out: a\nout: b": "out: is given twice",
+    '{"grid": {"beta": [3]}, "grid": {"beta": [4]}}': "grid: is given twice",
+    "gird: {beta: [3]}": "gird: is nothing to configure",
+    "options: 3": "options: must be names with values, not 3",
+    "options: {fold_lines: 3.5}": "--fold-lines: must be a whole number, not '3.5'",
+    "options: {zeta: yes}": "--zeta: expected at least one argument",
+    "options: {crease_law: mine}": "--crease-law: invalid choice: 'mine'",
+    "options: {force_time_step: 1}": "--force-time-step: must be true or false, not '1'",
+    "options: {checkpoint_every: soon}": "--checkpoint-every: invalid float value: 'soon'",
+    "sail: 3": "sail: must be a word, not 3",
+    "sail: miura\ngrid: {fold_lines: [3, 7]}": "unrecognized arguments: --fold-lines 3 7",
+    "threads: many": "--threads: must be a number, not 'many'",
+    "memory: 0": "--memory: 0: must be at least 1",
+    "threads: 1e400": "--threads: '1e400' is too large a number",
+    '{"out": "\\udcff"}': "must be UTF-8",
+    "minutes: 1.5": "--minutes: must be a whole number, not '1.5'",
+}
+
+
+class TestCommandLine(CommandTest):
+    """What is asked for, by words and by files; nothing runs."""
+
+    def setUp(self):
+        self.folder = scratch() / self.id().rpartition(".")[2]
+        self.folder.mkdir()
+
+    def dry(self, *options, home=None):
+        """`sweep.py --dry-run` in the folder, which leaves nothing."""
+        before = sorted(self.folder.rglob("*"))
+        done = subprocess.run(
+            ["/usr/bin/python3", SWEEP, *options, "--dry-run"],
+            cwd=self.folder,
+            env={**yade_environment(), **({"HOME": str(home)} if home else {})},
+            capture_output=True,
+            text=True,
+        )
+        self.assertEqual(sorted(self.folder.rglob("*")), before)
+        return done
+
+    def cases(self, *options, **more):
+        """States of the cases by name."""
+        done = self.dry(*options, **more)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return dict(line.split(": ") for line in done.stdout.splitlines())
+
+    def write(self, text):
+        (self.folder / "mine.yaml").write_text(text)
+        return "--config", "mine.yaml"
+
+    def test_bad_file_is_one_sentence(self):
+        for text, reason in BAD.items():
+            with self.subTest(text):
+                done = self.dry(*self.write(text))
+                self.ends_with_one_sentence(done, "sweep", "sweep: mine.yaml: ", reason)
+                self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+
+    def test_missing_file_no_core_and_no_folder_are_one_sentence(self):
+        self.ends_with_one_sentence(self.dry("--config=nowhere.yaml"), "sweep", "nowhere.yaml")
+        for option in ("-j0", "--jobs=-1", "--threads=00"):
+            done = self.dry(option)
+            self.assertRegex(done.stderr, "sweep: error: argument .*: must be at least 1\n$")
+        self.ends_with_one_sentence(self.dry("miura"), "sweep", "give several values")
+        self.ends_with_one_sentence(self.dry("--checkpoint-every=-1"), "sweep", "must be >= 0")
+        (self.folder / "file").write_text("")
+        (self.folder / "summary.json").write_text("")
+        done = self.dry("--out", ".")
+        self.ends_with_one_sentence(done, "sweep", "summary.json is a single run's")
+
+    def test_file_and_command_line_ask_for_the_same(self):
+        text = "sail: miura\ngrid: {omega: [15, 20.0]}\noptions: {size: 1e-1, flat: true}\n"
+        found = self.cases(*self.write(f"{text}out: there\nmemory: 1e3\nthreads: 1.0\n"))
+        self.assertEqual(found, {"omega_15": MISSING, "omega_20": MISSING})
+        words = ["miura", "--omega", "15", "20", "--size=.1", "--flat", "--out", "there"]
+        self.assertEqual(self.cases(*words), found)
+
+    def test_command_line_wins_over_the_file(self):
+        given = self.write("grid: {omega: [15, 20]}\noptions: {beta: 3}\n")
+        self.assertEqual(set(self.cases(*given)), {"omega_15", "omega_20"})
+        self.assertEqual(set(self.cases(*given, "--omega", "7", "8")), {"omega_7", "omega_8"})
+        both = {f"beta_{b}-omega_{a}" for a in (15, 20) for b in (1, 2)}
+        self.assertEqual(set(self.cases(*given, "--beta", "1", "2")), both)
+        self.assertEqual(set(self.cases("miura", *given)), {"omega_15", "omega_20"})
+
+    def test_values_taken_over_in_yaml_are_not_given_twice(self):
+        text = "a: &a {beta: 3, zeta: 1}\nb: {c: &c {<<: *a, beta: 4}}\nd: {<<: *c, beta: 5}\n"
+        self.write(text)
+        found = config.read_config(self.folder / "mine.yaml")
+        self.assertEqual(found["b"]["c"], {"beta": 4, "zeta": 1})
+        self.assertEqual(found["d"], {"beta": 5, "zeta": 1})
+
+    def test_folder_may_look_like_an_option_or_stand_below_home(self):
+        table_2 = self.cases()
+        self.assertEqual(len(table_2), 6)
+        for out, meant in (("-dash", self.folder / "-dash"), ("~/grid", scratch() / "grid")):
+            with self.subTest(out):
+                place = meant / grid.CASES / "alpha_crease_100-beta_0"
+                write_case(place, SailParameters(alpha_crease=100.0, beta=0.0, duration=1.2))
+                found = self.cases(*self.write(f"out: {out}\n"), home=scratch())
+                self.assertEqual(found, {**table_2, place.name: COMPLETE})
+
+
+class TestAnySail(SweepTest):
+    """A sheet from a file, of a mesh that is as coarse as can be."""
+
+    OPTIONS = ["--size", "0.05", "--duration", "0.01", "--no-pictures", *OFTEN]
+
+    def sheet(self, name):
+        """A FOLD file of its own."""
+        path = scratch() / f"{name}.fold"
+        shutil.copy(ROOT / "scripts" / "patterns" / "miura.fold", path)
+        return path
+
+    def test_sweep_over_a_sheet_reports_its_own_measures(self):
+        folder, sheet = scratch() / "sheets", self.sheet("swept")
+        words = [SWEEP, sheet, "--omega", "40", "60", *self.OPTIONS, "--out", folder]
+        said = self.completes(start(["/usr/bin/python3", *words], None))
+        self.assertIn("2 of 2 cases are complete, 0 diverged.", said)
+        with open(folder / "cases.csv", newline="") as file:
+            found = {row["omega"]: row for row in csv.DictReader(file)}
+        for omega, row in found.items():
+            summary = json.loads((folder / "cases" / row["case"] / "summary.json").read_text())
+            self.assertEqual(
+                (summary["sail"], summary["parameters"]["file"]), ("sheet", str(sheet))
+            )
+            angle = np.degrees(summary["measures"]["final_mean_crease_angle"])
+            self.assertAlmostEqual(float(row["final_mean_crease_angle_deg"]), angle)
+        areas = {omega: float(row["largest_projected_area"]) for omega, row in found.items()}
+        self.assertGreater(areas["60"], areas["40"])  # the faster it spins the sooner it opens
+        for name in ("radius.png", "crease_angle.png", "spin.png"):
+            self.assertEqual((folder / name).read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        sheet.write_text(sheet.read_text() + "\n")
+        said, _ = start(["/usr/bin/python3", *words], None).communicate()
+        self.assertRegex(said, "^sweep: .*omega_40 holds another case: sum_of_file = ")
+
+    def test_killed_case_of_a_sheet_goes_on_unless_its_file_is_another(self):
+        quiet, folder, sheet = scratch() / "quiet_sheet", scratch() / "cut_sheet", self.sheet("cut")
+
+        def run(place, halt=None):
+            words = [CASE, sheet, "--out", place, *self.OPTIONS]
+            return start(["yade", "-n", "-x", "-j1", *words], halt)
+
+        self.completes(run(quiet))
+        kill_at(60, partial(run, folder))
+        self.assertFalse(has_result(folder))
+        text = sheet.read_text()
+        sheet.write_text(text + "\n")
+        said, _ = run(folder).communicate()
+        self.assertRegex(said, f"case: {part_of(folder)} holds another case: sum_of_file = .*lose")
+        sheet.write_text(text)
+        self.completes(run(folder))
+        self.same(quiet, folder)
+
+
+class TestStopped(SweepTest):
+    def test_control_c_ends_all_in_one_sentence_and_nobody_else_sweeps_there(self):
+        folder = scratch() / "stopped"
+        options = [*COARSE, "--duration", "20", "--omega", "15", "20", "--no-pictures"]
+        process = start_sweep(folder, *options)
+        while "2 running" not in process.stdout.readline():
+            self.assertIsNone(process.poll())
+        said, _ = start_sweep(folder, *options).communicate()
+        self.assertEqual(said, f"sweep: another sweep is running in {folder}\n")
+        started = family(process.pid)[1:]
+        self.assertGreater(len(started), 2)
+        process.send_signal(signal.SIGINT)
+        said, _ = process.communicate()
+        self.assertEqual(process.returncode, 130)
+        self.assertEqual(
+            said.splitlines()[-1], "sweep: stopped; the same command goes on from here"
+        )
+        self.assertNotIn("Traceback", said)
+        self.assertEqual([pid for pid in started if state(pid) not in "XZ"], [])
+
+    def test_what_snakemake_says_where_it_fails_itself_is_quoted(self):
+        folder = scratch() / "no_cache"
+        environment = {**yade_environment(), "XDG_CACHE_HOME": "/dev/null"}
+        done = subprocess.run(
+            ["/usr/bin/python3", SWEEP, *SHORT, "--omega", "15", "20", "--out", folder],
+            env={**environment, "MPLCONFIGDIR": str(scratch())},
+            capture_output=True,
+            text=True,
+        )
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(
+            done.stderr.splitlines()[-1],
+            f"^sweep: Snakemake ended by 1: .*Not a directory: '/dev/null/.*{folder}/.*log$",
+        )
+
+
+@long
+class TestSlurm(SweepTest):
+    """A 2 x 2 sweep on a real Slurm; one job is cancelled while it runs, and one sweep killed."""
+
+    OPTIONS = [*COARSE, "--duration", "0.05", "--spin-up-tolerance", "1e-2", "--no-pictures"]
+    OPTIONS += ["--beta", "3", "30", "--alpha-crease", "100", "1000", "--slurm", "--memory", "1000"]
+
+    def start(self, slurm, folder):
+        return subprocess.Popen(
+            ["/usr/bin/python3", SWEEP, *self.OPTIONS, *OFTEN, "--out", folder],
+            env={**yade_environment(), **slurm.environment},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+
+    def running(self, slurm, sweep, ready=lambda job, case: True):
+        """Id and case of a job on Slurm as soon as one runs that is `ready`."""
+        while sweep.poll() is None:
+            for job, case, now in slurm.jobs():
+                if now == "RUNNING" and ready(job, case):
+                    return job, case
+            time.sleep(0.1)
+        self.fail(sweep.communicate()[0])
+
+    def test_a_cancelled_job_runs_again_and_a_killed_sweep_goes_on(self):
+        folder = scratch() / "slurm"
+        with Slurm() as slurm:
+            sweep = self.start(slurm, folder)
+            self.running(slurm, sweep)
+            before = {job for job, *_ in slurm.jobs()}
+            kill(sweep)
+            sweep = self.start(slurm, folder)
+            saved = folder / grid.CASES / "{}" / UNFINISHED / "checkpoint"
+            job, victim = self.running(
+                slurm,
+                sweep,
+                lambda job, case: job not in before and Path(str(saved).format(case)).exists(),
+            )
+            slurm.run("scancel", job)
+            said = self.completes(sweep)
+            self.assertEqual(slurm.jobs(), [])
+            again = self.completes(self.start(slurm, folder))
+            left = slurm.processes()
+        self.assertRegex(said, f"{victim}: it was stopped from outside.*; it runs again")
+        self.assertIn("4 of 4 cases are complete, 0 diverged.", said)
+        self.assertIn("4 of 4 cases are there already", again)
+        self.assertLessEqual(len(left), 3)  # its daemons
+        with open(folder / "cases.csv", newline="") as file:
+            outcomes = {row["case"]: row["outcome"] for row in csv.DictReader(file)}
+        names = {f"alpha_crease_{a}-beta_{b}" for a in (100, 1000) for b in (3, 30)}
+        self.assertEqual(outcomes, dict.fromkeys(names, COMPLETE))
+
+    def test_control_c_cancels_its_jobs(self):
+        with Slurm() as slurm:
+            sweep = self.start(slurm, scratch() / "slurm_stopped")
+            self.running(slurm, sweep)
+            sweep.send_signal(signal.SIGINT)
+            said, _ = sweep.communicate()
+            self.assertEqual(sweep.returncode, 130, said)
+            while slurm.jobs():  # those that end
+                self.assertNotIn("PENDING", {state for *_, state in slurm.jobs()})
+                time.sleep(0.1)
+
+    def test_a_test_that_fails_leaves_no_daemon_and_no_job(self):
+        slurm = Slurm()
+        with self.assertRaises(ZeroDivisionError):
+            with slurm:
+                slurm.run("sbatch", "--mem=100", "--output=/dev/null", "--wrap", "sleep 1000")
+                self.assertGreaterEqual(len(slurm.processes()), 3)
+                1 / 0
+        self.assertEqual(slurm.processes(), [])
+        self.assertFalse(slurm.folder.exists())
 
 
 @long

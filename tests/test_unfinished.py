@@ -2,14 +2,14 @@
 """Output folders: earlier results stay whole until a run has all of its own."""
 
 import contextlib
+import json
 import os
 import shutil
 import subprocess
 import unittest
 
-from membrane.results.case_folder import part_of
-from membrane.results.own import LIST, RUN, add_to_list, listed
-from membrane.results.unfinished import UNFINISHED, name_of, new_results
+from membrane.results.own import CASE, LIST, RUN, add_to_list, listed
+from membrane.results.unfinished import FAILURE, RESULT, SAVED, UNFINISHED, name_of, new_results
 from support import scratch, yade_environment
 
 HOLD = """
@@ -74,7 +74,7 @@ class TestNewResults(unittest.TestCase):
     def test_results_take_the_place_of_earlier_ones_and_leave_other_files(self):
         self.earlier(history="old")
         (self.folder / "mine.csv").write_text("of the user")
-        add_to_list(self.folder, RUN, ["sail.gif"])
+        add_to_list(self.folder, ["sail.gif"])
         (self.folder / "sail.gif").write_text("made of the earlier shapes")
         with new_results(self.folder) as part:
             self.write(part, history="new")
@@ -121,6 +121,52 @@ class TestNewResults(unittest.TestCase):
         with new_results(self.folder) as part:
             self.write(part, history="new", other="new")
 
+    ABOUT = {"sail": "square", "parameters": {"beta": 3.0}, "versions": {}}
+
+    def case(self, about=None):
+        """New results of a case that can go on."""
+        return new_results(self.folder, CASE, about or self.ABOUT)
+
+    def test_run_that_can_go_on_finds_what_it_had_and_leaves_its_reason(self):
+        with self.assertRaises(RuntimeError), self.case() as part:
+            self.write(part, history="half")
+            raise RuntimeError("no room")
+        self.assertEqual(json.loads((part / FAILURE).read_text()), {"reason": "no room"})
+        with self.assertRaises(KeyboardInterrupt), self.case() as part:
+            self.assertFalse((part / FAILURE).exists())
+            self.assertEqual((part / "history.csv").read_text(), "half")
+            raise KeyboardInterrupt
+        with self.case({**self.ABOUT, "versions": {"yade": "another"}}) as part:
+            self.assertFalse((part / "history.csv").exists())
+            self.write(part, history="whole")
+            (part / SAVED).mkdir()
+        self.assertEqual(self.found(), {"history.csv": "whole", "shapes/film_whole.vtu": "whole"})
+        self.assertFalse((self.folder / UNFINISHED).exists())
+
+    def test_who_sees_the_result_of_a_case_sees_all_whenever_it_is_cut_off(self):
+        whole = {name: "all" for name in ("history.csv", "shapes/film_all.vtu", RESULT)}
+        outcomes = []
+        for count in range(9):
+            for cut_off in (stopped, killed):
+                with self.subTest(renames=count, by=cut_off.__name__):
+                    shutil.rmtree(self.folder, ignore_errors=True)
+                    cut_off(count, self.finish)
+                    found = self.found()
+                    outcomes.append(RESULT in found)
+                    if outcomes[-1]:
+                        self.assertLessEqual(whole.items(), found.items())
+                    self.finish()
+                    self.assertEqual(self.found(), whole)
+        self.assertEqual(set(outcomes), {True, False})
+
+    def finish(self):
+        """Finish a case, or the exchange of its results, as `run_case` does."""
+        with self.case() as part:
+            if not any((folder / RESULT).exists() for folder in (self.folder, part)):
+                shutil.rmtree(part / "shapes", ignore_errors=True)
+                self.write(part, history="all")
+                (part / RESULT).write_text("all")
+
     def test_failure_before_the_first_file_leaves_no_trace(self):
         with self.assertRaises(ValueError), new_results(self.folder / "a" / "b"):
             raise ValueError
@@ -153,7 +199,6 @@ class TestNewResults(unittest.TestCase):
         with new_results(self.folder) as part:
             self.assertEqual(name_of(part), self.folder.name)
         self.assertEqual(name_of(self.folder), self.folder.name)
-        self.assertEqual(name_of(part_of(self.folder)), self.folder.name)
 
 
 if __name__ == "__main__":

@@ -51,7 +51,7 @@ struct MembraneLedger::Tally {
 
     Tally(const ::membrane::MotionSums& moved, std::size_t entries, bool all)
         : arriving(entries, 0.), mean(entries, 0.), kinetic(moved.kinetic), potential(moved.potential),
-          momentum(moved.angularMomentum), all(all) {
+          momentum(moved.angularMomentum), all(wanted) {
         mean[impulseEntry] = moved.torque;
     }
 };

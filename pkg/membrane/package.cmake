@@ -5,19 +5,18 @@
 set(package_dir lib/python${python_version}/dist-packages/membrane)
 install(TARGETS _membrane LIBRARY DESTINATION ${package_dir})
 install(FILES ${releases} DESTINATION ${package_dir})
-install(DIRECTORY scripts/membrane/ DESTINATION ${package_dir} FILES_MATCHING PATTERN *.py
+install(DIRECTORY scripts/membrane/ DESTINATION ${package_dir} FILES_MATCHING PATTERN *.py PATTERN Snakefile
         PATTERN __pycache__ EXCLUDE PATTERN viewer EXCLUDE)
 # The viewer of report.html, if `scripts/run.sh viewer` has made it.
 install(FILES ${python_dir}/membrane/view/viewer.html DESTINATION ${package_dir}/view OPTIONAL)
 
 # The commands, as `yade-membrane deploy`.
 set(share_dir share/yade-membrane)
-install(DIRECTORY scripts/ DESTINATION ${share_dir}/scripts FILES_MATCHING PATTERN *.py PATTERN *.fold PATTERN *.yaml
-        PATTERN Snakefile PATTERN membrane EXCLUDE PATTERN __pycache__ EXCLUDE
+install(DIRECTORY scripts/ DESTINATION ${share_dir}/scripts FILES_MATCHING PATTERN *.py PATTERN *.fold
+        PATTERN membrane EXCLUDE PATTERN __pycache__ EXCLUDE
         REGEX "/(bench|chart|parts|probe|stability|verify)\\.py$" EXCLUDE
         REGEX "/(packaging|probing)$" EXCLUDE)
 install(PROGRAMS scripts/run.sh DESTINATION ${share_dir}/scripts)
-install(PROGRAMS scripts/workflow/slurm/status.sh DESTINATION ${share_dir}/scripts/workflow/slurm)
 file(CREATE_LINK ../${share_dir}/scripts/run.sh ${PROJECT_BINARY_DIR}/yade-membrane SYMBOLIC)
 install(FILES ${PROJECT_BINARY_DIR}/yade-membrane DESTINATION bin)
 

@@ -115,7 +115,8 @@ set_source_files_properties(${PROJECT_BINARY_DIR}/unity/DESCENDING.cpp PROPERTIE
 # ---------------------------------------------------------------------------------------------------------------------
 # The Python package, complete in build/python, so that PYTHONPATH=build/python serves.
 
-file(GLOB_RECURSE python_sources CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/scripts scripts/membrane/*.py)
+file(GLOB_RECURSE python_sources CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/scripts scripts/membrane/*.py
+     scripts/membrane/Snakefile)
 set(python_copies "")
 foreach(file IN LISTS python_sources)
     set(source ${PROJECT_SOURCE_DIR}/scripts/${file})

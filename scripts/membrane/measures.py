@@ -8,7 +8,7 @@ pages, tables and summary.json all go through these lists.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import pi
+from math import inf, pi
 from typing import Any, Callable, NamedTuple
 
 import numpy as np
@@ -49,6 +49,8 @@ class Measure:
         Which of its values summary.json tells: "final", "largest".
     minor : bool
         Drawn thin, as one of several alike.
+    most : float
+        What no sail exceeds, of either sign; beyond it a table is in `shown` or in percent.
     """
 
     name: str
@@ -59,6 +61,7 @@ class Measure:
     shown: Shown | None = None
     summary: tuple[str, ...] = ()
     minor: bool = False
+    most: float = inf
 
 
 @dataclass(frozen=True)
@@ -223,6 +226,7 @@ SQUARE = (
         lambda at: deployment_rate(at.mesh, at.x),
         "deployment rate",
         summary=("final", "largest"),
+        most=1.5,
     ),
     Measure("mean_tip_radius", "m", "of the tips", lambda at: mean_tip_radius(at.mesh, at.x)),
     Measure(
@@ -238,6 +242,7 @@ SQUARE = (
         lambda at: float(at.once(_phases).mean()),
         PHASE,
         DEGREES,
+        most=pi,
     ),
     *map(_tip, range(4)),
 )
@@ -289,6 +294,7 @@ SHEET = (
         _projected_area,
         "area over flat area",
         summary=("final", "largest"),
+        most=1.5,
     ),
     Measure("height", "m", "height", lambda at: float(np.ptp(at.x[:, 2])), summary=("final",)),
     Measure(
@@ -299,6 +305,7 @@ SHEET = (
         "crease angle",
         DEGREES,
         summary=("final",),
+        most=2 * pi,
     ),
     Measure(
         "spin_rate",
@@ -412,7 +419,22 @@ def _swing(name):
     return lambda h: swing(h["time"], h["phase_difference"])[name]
 
 
+def _amplitude(h):
+    """Largest lag [rad]; None where the run ends before it shows."""
+    found = swing(h["time"], h["phase_difference"])
+    return found["largest_lag"] if found["time_of_largest_lag"] < h["time"][-1] else None
+
+
+def _period(h):
+    """Twice the time [s] from the largest lag to the lead that follows, None as there."""
+    _, half = lag_and_half_period(h["time"], h["phase_difference"])
+    left = h["time"][-1] - _swing("time_of_largest_lag")(h)
+    return 2 * half if 0 < half < left else None
+
+
 SQUARE_OUTCOMES = (
+    Outcome("amplitude", "rad", "amplitude of the tips' swing", _amplitude, DEGREES),
+    Outcome("period", "s", "period of the tips' swing", _period),
     *summarised(SQUARE),
     Outcome(
         "time_of_rate_0.9", "s", "deployment rate above 0.9 from", _time_above("deployment_rate")

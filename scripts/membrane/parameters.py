@@ -470,24 +470,13 @@ def _range(about):
     return words + (f" and <= {about['most']:g}" if about["most"] < inf else "")
 
 
-def describe(item: Field, default: Any = None) -> str:
-    """Meaning, unit, range and default of a parameter in words, for help texts.
-
-    Parameters
-    ----------
-    item : dataclasses.Field
-        Of SailParameters or another class of parameters.
-    default : optional
-        In place of the field's own: a value, or a list of them where several may be given.
-    """
-    about = item.metadata
-    default = item.default if default is None else default
+def describe(item: Field) -> str:
+    """Meaning, unit, range and default of a parameter, a Field, in words, for help texts."""
+    about, default = item.metadata, item.default
     unit = "" if about["unit"] == "-" else f" [{about['unit']}]"
     extent = "" if item.type is bool or about["choices"] else f"{_range(about)}; "
-    more = "one or more; " if isinstance(default, list) else ""
-    values = default if isinstance(default, list) else [default]
-    words = " ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in values)
-    return f"{about['text']}{unit} ({extent}{more}default {words})"
+    word = f"{default:g}" if isinstance(default, float) else str(default)
+    return f"{about['text']}{unit} ({extent}default {word})"
 
 
 def attributes(kind: str, parameters: Any) -> dict[str, Any]:

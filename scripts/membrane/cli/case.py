@@ -47,11 +47,8 @@ def main() -> None:
         arguments.checkpoint_every,
         pictures=not arguments.no_pictures,
     )
-    if found["outcome"] == COMPLETE:
+    if found.state == COMPLETE:
         print(f"Complete: {arguments.out}")
-    elif found["time"] is None:
-        print(f"Diverged in the spin-up: {found['reason']}: {arguments.out}")
     else:
-        print(
-            f"Diverged {found['time']:.6g} s after the release: {found['reason']}: {arguments.out}"
-        )
+        when = "in the spin-up" if found.time is None else f"{found.time:.6g} s after the release"
+        print(f"Diverged {when}: {found.reason}: {arguments.out}")

@@ -4,11 +4,13 @@
 import argparse
 import os
 from collections.abc import Iterable
-from dataclasses import Field, fields
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from ..parameters import PARSERS, Refused, SailParameters, check_name, describe, read_values, whole
+from ..files import shown
+from ..parameters import PARSERS, Refused, SailParameters, check_name, describe
+from ..parameters import read_values, whole
 from ..run.sails import SAILS
 
 
@@ -90,10 +92,7 @@ def sails_text() -> str:
 
 
 def add_arguments(
-    parser: argparse.ArgumentParser,
-    kind: Any = SailParameters,
-    several: dict | None = None,
-    defaults: dict | None = None,
+    parser: argparse.ArgumentParser, kind: Any = SailParameters, several: bool = False
 ) -> None:
     """Add one option for every parameter to an argparse parser, grouped by source.
 
@@ -102,31 +101,22 @@ def add_arguments(
     parser : ArgumentParser
     kind : class
         Of the parameters.
-    several : dict, optional
-        Defaults, a sequence each, of those parameters that take one value or more.
-    defaults : dict, optional
-        Of the others, in place of those of `kind`.
+    several : bool
+        Each takes one value or more, and has none unless it is given.
     """
-    chosen = {**(defaults or {}), **{name: list(v) for name, v in (several or {}).items()}}
     for source in dict.fromkeys(item.metadata["source"] for item in fields(kind)):
         group = parser.add_argument_group(f"parameters, {source}")
         for item in fields(kind):
             if item.metadata["source"] == source:
-                add_argument(group, item, chosen.get(item.name, item.default))
+                _add_argument(group, item, several)
 
 
 def parse(
-    parser: argparse.ArgumentParser,
-    kind: Any = SailParameters,
-    words: list[str] | None = None,
-    *,
-    several: dict | None = None,
-    defaults: dict | None = None,
-    root: argparse.ArgumentParser | None = None,
+    parser: argparse.ArgumentParser, kind: Any = SailParameters, words: list[str] | None = None
 ) -> argparse.Namespace:
     """Arguments of an argparse parser with options for all parameters and one for a file of them.
 
-    What is given on the command line wins over the file, which wins over `defaults`, a dict.
+    What is given on the command line wins over the file, which wins over defaults.
 
     Parameters
     ----------
@@ -136,28 +126,24 @@ def parse(
         Of the parameters.
     words : list of str, optional
         In place of those of sys.argv.
-    several : dict, optional
-        See add_arguments; the file's values of these parameters do not count.
-    defaults : dict, optional
-        In place of those of `kind`.
-    root : ArgumentParser, optional
-        Parses, if `parser` is one of its commands.
 
     Raises
     ------
     BadFile or OSError
     """
-    add_arguments(parser, kind, several, defaults)
+    add_arguments(parser, kind)
+    add_file(parser)
+    arguments = parser.parse_args(words)
+    if arguments.parameters is not None:
+        parser.set_defaults(**read_values(arguments.parameters, kind))
+        arguments = parser.parse_args(words)
+    return arguments
+
+
+def add_file(parser: argparse.ArgumentParser) -> None:
+    """Add the option --parameters, a file of them."""
     text = "take parameters that are not given from this JSON file, as summary.json of a run"
     parser.add_argument("--parameters", type=_named, metavar="FILE", help=text)
-    root = root or parser
-    arguments = root.parse_args(words)
-    file = getattr(arguments, "parameters", None)
-    if file is not None:
-        values = read_values(file, kind)
-        parser.set_defaults(**{n: v for n, v in values.items() if n not in (several or {})})
-        arguments = root.parse_args(words)
-    return arguments
 
 
 def _named(word):
@@ -166,35 +152,30 @@ def _named(word):
     return word
 
 
-def add_argument(group: Any, item: Field, default: Any) -> None:
-    """Add the option for one parameter to an argparse parser or group.
+def _truth(word):
+    """A truth value from a word of the command line."""
+    if word.lower() not in ("true", "false"):
+        raise Refused(f"must be true or false, not {shown(word)}")
+    return word.lower() == "true"
 
-    Parameters
-    ----------
-    group : ArgumentParser or its group
-    item, default
-        As of `describe`.
-    """
-    if item.name == "file" and not default:
-        group.add_argument("file", type=_named, help=item.metadata["text"])
+
+def _add_argument(group, item, several):
+    """Add the option for one parameter, a Field, to an argparse group."""
+    about, form = item.metadata, {"nargs": "+"} if several else {}
+    if item.name == "file" and not item.default:
+        group.add_argument("file", type=_named, help=about["text"], **form)
         return
-    flag = "--" + item.name.replace("_", "-")
-    text = describe(item, default).replace("%", "%%")
-    if item.type is bool:
+    flag, text = "--" + item.name.replace("_", "-"), describe(item).replace("%", "%%")
+    default = argparse.SUPPRESS if several else item.default
+    if item.type is bool and not several:
         group.add_argument(flag, action=argparse.BooleanOptionalAction, default=default, help=text)
         return
-    choices = item.metadata["choices"]
-    metavar = None if choices else item.metadata["unit"].replace("-", "N")
-    more = {"nargs": "+"} if isinstance(default, list) else {}
-    group.add_argument(
-        flag,
-        type=PARSERS[item.type],
-        default=default,
-        choices=choices,
-        metavar=metavar,
-        help=text,
-        **more,
-    )
+    if item.type is bool:
+        form = {"nargs": "*", "type": _truth}
+    else:
+        form |= {"type": PARSERS[item.type], "choices": about["choices"]}
+        form["metavar"] = None if about["choices"] else about["unit"].replace("-", "N")
+    group.add_argument(flag, default=default, help=text, **form)
 
 
 def from_arguments(

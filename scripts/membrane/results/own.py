@@ -10,28 +10,27 @@ import fcntl
 import os
 import shutil
 import stat
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
-from pathlib import PurePath
+from pathlib import Path, PurePath
 
 from ..files import BadFile, read_object, shown, write_json
 
 LOCK = "lock"
 OURS = b"made by membrane, which may remove this folder and all that is in it\n"  # in a lock
 LIST = ".membrane"
-RUN, CALIBRATION, SWEEP = "a run", "a calibration", "a sweep"  # kinds of results
+RUN, CASE, CALIBRATION, SWEEP = "a run", "a case", "a calibration", "a sweep"  # kinds of results
 
 
 @contextmanager
-def held(folder, busy=None, links=()):
+def held(folder: Path, busy: str = "") -> Iterator[None]:
     """Hold a folder that is ours as a whole, and is made if it is missing, as the only process.
 
     Parameters
     ----------
     folder : Path
-    busy : str, optional
-        What to say if another process holds it; default: wait for that one.
-    links : collection of str
-        Names of the symbolic links in it that are ours.
+    busy : str
+        What to say if another process holds it; "": wait for that one.
 
     Raises
     ------
@@ -46,7 +45,7 @@ def held(folder, busy=None, links=()):
             except BlockingIOError:
                 raise ValueError(busy) from None
             if _is_at(lock, folder / LOCK):  # else it was removed meanwhile
-                _claim(lock, folder, links)
+                _claim(lock, folder)
                 yield
                 return
         finally:
@@ -85,7 +84,7 @@ def _is_at(handle, path):
         return False
 
 
-def _claim(lock, folder, links):
+def _claim(lock, folder):
     """Mark a folder that was made just now as ours; ValueError unless it is."""
     is_file = stat.S_ISREG(os.fstat(lock).st_mode)
     content = os.pread(lock, len(OURS) + 1, 0) if is_file else b""
@@ -95,7 +94,7 @@ def _claim(lock, folder, links):
         os.pwrite(lock, OURS, 0)
         os.fsync(lock)  # before anything else is in it: after a power cut, too, it is ours
     for path in folder.rglob("*"):
-        if path.is_symlink() and str(path.relative_to(folder)) not in links:
+        if path.is_symlink():
             raise ValueError(f"{path} is a symbolic link, which is not followed: remove it")
 
 
@@ -106,19 +105,12 @@ def _not_ours(folder):
     )
 
 
-def unlock(folder):
-    """Take our mark from a folder that is held: from now on it is the user's."""
-    path = folder / LOCK
-    if path.is_file() and not path.is_symlink() and path.read_bytes() == OURS:
-        path.unlink(missing_ok=True)
-
-
-def content(folder):
-    """What is in a folder beside its lock: a list of Path."""
+def content(folder: Path) -> list[Path]:
+    """What is in a folder beside its lock."""
     return [path for path in folder.iterdir() if path.name != LOCK]
 
 
-def empty(folder):
+def empty(folder: Path) -> None:
     """Remove all that is in a folder that is held."""
     for path in content(folder):
         if path.is_dir() and not path.is_symlink():
@@ -127,7 +119,7 @@ def empty(folder):
             path.unlink()
 
 
-def remove(folder):
+def remove(folder: Path) -> None:
     """Remove a folder that is held, with all that is in it."""
     empty(folder)
     (folder / LOCK).unlink()
@@ -135,30 +127,30 @@ def remove(folder):
         folder.rmdir()
 
 
-def listed(folder, kind):
-    """Names of the results in a folder of the user's that are ours to replace: a set of str.
-
-    Parameters
-    ----------
-    folder : Path
-    kind : str
-        RUN, CALIBRATION or SWEEP.
+def listed(folder: Path, kind: str) -> set[str]:
+    """Names of the results in a folder of the user's that are ours to replace.
 
     Raises
     ------
     ValueError
         If it holds results of another kind, or the list is not ours.
     """
+    found, names = _list(folder)
+    if found not in (None, kind):
+        raise ValueError(f"{folder} holds {shown(found)[1:-1]}: choose another folder")
+    return names
+
+
+def _list(folder):
+    """Kind of the results in a folder, None if there are none, and their names."""
     path = folder / LIST
     if not os.path.lexists(path):
-        return set()
+        return None, set()
     found = read_object(path)
     names = found.get("made")
     if not isinstance(names, list) or not all(map(_is_name, names)):
         raise BadFile(path, "made", "must be a list of names of files")
-    if found.get("kind") != kind:
-        raise ValueError(f"{folder} holds {shown(found.get('kind'))[1:-1]}: choose another folder")
-    return set(names)
+    return found.get("kind", ""), set(names)
 
 
 def _is_name(name):
@@ -166,19 +158,20 @@ def _is_name(name):
     return isinstance(name, str) and name not in ("", "..") and PurePath(name).name == name
 
 
-def write_list(folder, kind, names):
+def write_list(folder: Path, kind: str, names: Iterable[str]) -> None:
     """Note in a folder of the user's which results in it are ours to replace."""
     write_json(folder / LIST, {"membrane": "made these", "kind": kind, "made": sorted(names)})
 
 
-def add_to_list(folder, kind, names):
+def add_to_list(folder: Path, names: Iterable[str]) -> None:
     """Add names to the list of a folder, if it has one; ValueError if one is another's."""
-    if (folder / LIST).exists():
+    kind, ours = _list(folder)
+    if kind is not None:
         refuse_others(folder, kind, names)
-        write_list(folder, kind, listed(folder, kind) | set(names))
+        write_list(folder, kind, ours | set(names))
 
 
-def refuse_others(folder, kind, names):
+def refuse_others(folder: Path, kind: str, names: Iterable[str]) -> None:
     """Raise ValueError if a folder holds something under one of some names that is not ours."""
     ours = listed(folder, kind)
     for name in names:

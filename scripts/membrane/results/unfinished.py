@@ -1,17 +1,24 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Output folders that keep an earlier run's results until a new run has all of its own."""
+"""Output folders: new results appear all at once or not at all, and take the place of earlier ones.
+
+All commands write into `FOLDER/unfinished`, which one process at a time holds; at the end what is
+there is moved into FOLDER. A run that can go on keeps there what it takes, too.
+"""
 
 import os
 import shutil
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from ..files import flush, settle
+from ..files import TEMPORARY, BadFile, flush, read_object, settle, write_json
 from . import own
-from .case_folder import PART
 
 UNFINISHED = "unfinished"  # folder within the output folder
 GOING, GONE = "earlier.part", "earlier"  # where earlier results are while they are exchanged
+BEGUN, SAVED, FAILURE = "begun.json", "checkpoint", "failure.json"  # what runs, how far, its end
+RESULT = "case.json"  # comes last: who sees it sees all
+IDENTITY = ("sail", "sum_of_file")  # of a case, beside its parameters
 
 # What the commands leave in an output folder: refused at once where it is another's.
 RESULTS = {
@@ -32,39 +39,53 @@ RESULTS = {
     ),
     own.CALIBRATION: ("calibration.json", "calibration.png", "runs.csv"),
 }
+RESULTS[own.CASE] = (*RESULTS[own.RUN], RESULT)
+
+
+class Another(ValueError):
+    """A folder holds another case than that which is asked for."""
 
 
 @contextmanager
-def new_results(folder, kind=own.RUN):
+def new_results(
+    folder: str | Path, kind: str = own.RUN, resume: dict | None = None
+) -> Iterator[Path]:
     """Give a folder to write results into, which take the place of earlier ones at the end.
 
     Where the block ends by an error, `folder` holds what it held before and, in
-    `folder`/unfinished, what the run had written; the next run begins by removing that.
+    `folder`/unfinished, what the run had written; the next run begins by removing that, unless it
+    can go on from there: then also the reason is kept, and it waits for a process that runs it.
 
     Parameters
     ----------
     folder : path
         Made if missing. What is in it and not listed as ours is left alone.
     kind : str
-        Of the results: own.RUN or own.CALIBRATION.
+        Of the results: own.RUN, CASE or CALIBRATION.
+    resume : dict, optional
+        Of a run that can go on: what it is about, ready for JSON, with its "sail" and
+        "parameters". What an earlier process has left that was about the same is kept.
 
     Raises
     ------
     ValueError
-        If another process writes results there, or something of another's would be lost.
+        If another process writes results there, or something of another's would be lost, or a
+        case that can go on.
     """
     folder = Path(folder)
     part = folder / UNFINISHED
     missing = [path for path in (folder, *folder.parents) if not path.exists()]
-    busy = f"{part}: another run is writing its results there"
+    busy = "" if resume else f"{part}: another run is writing its results there"
     try:
         with own.held(part, busy):
             try:
                 _settle(folder, part)
                 own.refuse_others(folder, kind, RESULTS[kind])
+                _begin(part, resume)
+                with _reason_kept(part, resume):
+                    yield part
+                    _swap(folder, part, kind)
                 own.empty(part)
-                yield part
-                _swap(folder, part, kind)
             finally:
                 if not own.content(part):
                     own.remove(part)
@@ -74,15 +95,79 @@ def new_results(folder, kind=own.RUN):
                 path.rmdir()
 
 
-def name_of(folder):
+def _begin(part, about):
+    """Make `part` ready: empty, unless the same was begun there; ValueError if another was."""
+    if about and begun(part) == about:
+        (part / FAILURE).unlink(missing_ok=True)
+        for path in part.rglob(TEMPORARY + "*"):  # of a process that was killed
+            path.unlink()
+        return
+    refuse_begun(part, about)
+    own.empty(part)
+    if about:
+        write_json(part / BEGUN, about)
+
+
+@contextmanager
+def _reason_kept(part, about):
+    """Where the block ends by an error, note why for those who look at a run that can go on."""
+    try:
+        yield
+    except Exception as error:
+        if about:
+            with suppress(OSError):  # a full disk, say, of which `error` tells
+                write_json(part / FAILURE, {"reason": str(error) or type(error).__name__})
+        raise
+
+
+def begun(part: Path) -> dict:
+    """What a run in `part` that can go on is about; {} if nobody knows."""
+    try:
+        found = read_object(part / BEGUN)
+    except (OSError, BadFile):
+        return {}
+    return found if isinstance(found.get("parameters"), dict) else {}
+
+
+def refuse_begun(part: Path, about: dict | None) -> None:
+    """Raise ValueError if another case than this has begun in `part`, and has a checkpoint."""
+    was = begun(part)
+    if was and (part / SAVED).is_dir():
+        try:
+            refuse_another(part, was, about)
+        except Another as error:
+            raise ValueError(f"{error}; to lose what it has done, remove {part}") from None
+
+
+def refuse_another(folder: Path, was: dict, now: dict | None) -> None:
+    """Raise Another if the case of a folder differs in sail, parameters or the sheet's file.
+
+    Parameters
+    ----------
+    folder : Path
+    was, now : dict
+        What its files say, and what a run is about; None: nothing.
+    """
+    if now is None:
+        raise Another(f"{folder} holds a case that can go on")
+    was, now = ({**{n: d.get(n) for n in IDENTITY}, **d["parameters"]} for d in (was, now))
+    for name in sorted({*was, *now}):
+        if was.get(name) != now.get(name):
+            found, wanted = was.get(name), now.get(name)
+            raise Another(f"{folder} holds another case: {name} = {found}, not {wanted}")
+
+
+def name_of(folder: str | Path) -> str:
     """Name of an output folder, also of one whose results are still being written."""
     path = Path(folder).resolve()
-    return path.parent.name if path.name == UNFINISHED else path.name.removesuffix(PART)
+    return path.parent.name if path.name == UNFINISHED else path.name
 
 
 def _swap(folder, part, kind):
-    """Put all that is in `part` in the place of earlier results, and delete those."""
-    made = [path.name for path in own.content(part)]
+    """Put the results in `part` in the place of earlier ones, and delete those."""
+    made = [path.name for path in _results(part) if path.name != own.LIST]
+    if not made:
+        return
     own.refuse_others(folder, kind, made)
     earlier = own.listed(folder, kind)
     own.write_list(part, kind, made)  # which goes the way of the results
@@ -98,6 +183,12 @@ def _swap(folder, part, kind):
         _settle(folder, part)
 
 
+def _results(part):
+    """What is in `part` of the results, the mark that all are there last."""
+    found = [p for p in own.content(part) if p.name not in (BEGUN, SAVED, FAILURE, GOING, GONE)]
+    return sorted(found, key=lambda path: path.name == RESULT)
+
+
 def _settle(folder, part):
     """Go on with an exchange of results, or back if earlier ones are still on their way out.
 
@@ -108,10 +199,12 @@ def _settle(folder, part):
             _move(path, folder)
         (part / GOING).rmdir()
     if (part / GONE).exists():
-        for path in own.content(part):
-            if path.name != GONE:
-                _move(path, folder)
+        for path in _results(part):
+            if path.name == RESULT:
+                flush(folder)
+            _move(path, folder)
         flush(folder)
+        flush(folder.parent)
         shutil.rmtree(part / GONE)
 
 

@@ -71,7 +71,7 @@ def animate(folder: Path | str) -> list[Path]:
         if not shutil.which(program):
             raise RuntimeError(f"no animation without {program} (apt-get install {package})")
     run = read_run(folder)
-    own.add_to_list(folder, own.RUN, FILES)
+    own.add_to_list(folder, FILES)
     films = [folder / name for name in FILES]
     with replacing(films[0]) as film, replacing(films[1]) as gif:
         with virtual_display(), contextlib.closing(Stage(run)) as stage:

@@ -68,7 +68,7 @@ def write_report(folder: Path | str) -> Path:
     # "<" could end the page's script.
     content = json.dumps(run_data(folder), allow_nan=False).replace("<", "\\u003c")
     page = folder / PAGE
-    own.add_to_list(folder, own.RUN, [PAGE])
+    own.add_to_list(folder, [PAGE])
     replace_text(page, before + content + after)
     return page
 

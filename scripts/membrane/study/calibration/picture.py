@@ -1,25 +1,28 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Picture of a calibration: target and fit, what is left, and where the runs and the fit lie."""
 
+from dataclasses import fields
+
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 from membrane.view.plots import save
 
-from . import COLUMNS
+from . import columns_of
 
-LABELS = {"alpha_crease": "alpha_c [-]", "beta": "beta [-]"}
 DPI = 120
 WIDEST = 3.0  # of a logarithm, that is shown of an uncertainty
 
 
-def draw(path, target, fit, surface, found, names, runs):
+def draw(path, kind, target, fit, surface, found, names, runs):
     """Draw it.
 
     Parameters
     ----------
     path : path
         Picture to write.
+    kind : class
+        Of the parameters.
     target : Target
     fit : (C, S) float
         Curves of the run with the parameters found.
@@ -37,18 +40,21 @@ def draw(path, target, fit, surface, found, names, runs):
     for i, name in enumerate(target.columns):
         above = figure.add_subplot(grid[0, i])
         below = figure.add_subplot(grid[1, i], sharex=above)
-        _draw_curve(above, below, target, i, name, fit, surface.scatter)
+        _draw_curve(above, below, target, i, columns_of(kind.sail)[name], fit, surface.scatter)
         above.legend(frameon=False)
     if len(names) == 2:
-        _draw_parameters(figure.add_subplot(grid[:, -1]), found, names, runs, surface.region)
+        axes = figure.add_subplot(grid[:, -1])
+        _draw_parameters(axes, found, runs, surface.region)
+        units = {item.name: item.metadata["unit"] for item in fields(kind)}
+        labels = [f"{name.replace('_', ' ')} [{units[name]}]" for name in names]
+        axes.set(xlabel=labels[0], ylabel=labels[1])
     save(figure, path, dpi=DPI)
 
 
-def _draw_curve(above, below, target, i, name, fit, scatter):
-    """One curve, and below it what target and runs are off the fit."""
-    unit = COLUMNS[name]
-    scale, unit = (np.degrees(1), "deg") if unit == "rad" else (1.0, unit)
-    times, label = 1e3 * target.times, name.replace("_", " ")
+def _draw_curve(above, below, target, i, measure, fit, scatter):
+    """The curve of a Measure, and below it what target and runs are off the fit."""
+    unit, scale = measure.shown or (measure.unit, 1.0)
+    times, label = 1e3 * target.times, measure.name.replace("_", " ")
     above.plot(times, scale * target.values[i], ".", color="0.5", markersize=4, label="target")
     above.plot(times, scale * fit[i], color="C0", label="fit")
     above.set(ylabel=f"{label} [{unit}]")
@@ -65,7 +71,7 @@ def _draw_curve(above, below, target, i, name, fit, scatter):
         axes.margins(x=0)
 
 
-def _draw_parameters(axes, found, names, runs, region):
+def _draw_parameters(axes, found, runs, region):
     """All runs, the estimate, and its curves of one and two standard deviations."""
     axes.loglog(*np.exp(runs.T), ".", color="0.6", markersize=4, label="runs")
     values, vectors = np.linalg.eigh(found.covariance)
@@ -84,6 +90,5 @@ def _draw_parameters(axes, found, names, runs, region):
         axis.set_major_locator(LogLocator(subs=ticks))
         axis.set_minor_locator(NullLocator())
         axis.set_major_formatter("{x:g}")
-    axes.set(xlabel=LABELS[names[0]], ylabel=LABELS[names[1]])
     axes.grid(alpha=0.3)
     axes.legend(frameon=False)

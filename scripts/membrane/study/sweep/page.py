@@ -14,7 +14,7 @@ TEMPLATE = """\
 <meta name="viewport" content="width=device-width">
 <meta http-equiv="Content-Security-Policy"
       content="default-src 'none'; style-src 'unsafe-inline'; img-src 'self' file:">
-<title>Sweep over {{ axes | join(" and ") }}</title>
+<title>Sweep{{ " over " if axes }}{{ axes | join(" and ") }}</title>
 <style>
 body { font: 15px/1.45 sans-serif; color: #222; max-width: 68rem;
        margin: 2rem auto; padding: 0 1rem; }
@@ -37,7 +37,7 @@ tr.damaged td, tr.failed td, tr.killed td, tr.running td, tr.missing td {
 </style>
 </head>
 <body>
-<h1>Sweep over {{ axes | join(" and ") }}</h1>
+<h1>Sweep{{ " over " if axes }}{{ axes | join(" and ") }}</h1>
 <p>{{ cases | length }} cases:
 {%- for state, count in states.items() %} {{ count }} {{ state }}{{ "." if loop.last else "," }}
 {%- endfor %} All numbers are in <a href="{{ table | place }}">{{ table }}</a>.</p>
@@ -116,12 +116,12 @@ are missing; the sweep's command runs them, and them alone.
 """
 
 
-def place(path):
+def place(path: str) -> str:
     """A path relative to the page as a link has it: no name can be taken for more than a name."""
     return quote(os.fsencode(path))
 
 
-def render(**content):
+def render(**content) -> str:
     """The page's HTML; all texts are escaped."""
     environment = Environment(
         autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined

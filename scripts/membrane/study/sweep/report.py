@@ -5,35 +5,28 @@ from dataclasses import fields
 from pathlib import Path
 
 from membrane.files import replace_text
-from membrane.parameters import SailParameters
+from membrane.measures import HUB, in_plots
+from membrane.parameters import KINDS
 from membrane.results import own
-from membrane.results.case_folder import COMPLETE, DIVERGED
+from membrane.results.case_folder import COMPLETE, DIVERGED, Status
+from membrane.run.sails import SAILS
 
-from .grid import AXES, CURVES, PAGE, RESULTS, SWING, TABLE, refuse_other_results
+from .grid import MAPS, PAGE, RESULTS, TABLE, picture_of, refuse_other_results
 from .page import render
-from .pictures import plot_curves, plot_swing, three_digits
-from .results import MEASURES, read, varied, write_table
+from .pictures import Axes, plot_curves, plot_maps, three_digits
+from .results import measured, outcomes, read, unit_of, values, varied, write_table
 
-CAPTIONS = (
-    "Deployment rate of all cases, as in the paper's Figures 8 and 9.",
-    "Mean phase difference between tips and spool of all cases, as in the paper's Figures 8 and 9; "
-    "positive where the tips lead.",
-)
+MAPPED = 4  # outcomes that have heat maps
 NOT_SEEN = "not seen"  # where a run ends before what is asked for
 
 
-def report(folder):
-    """Write the report into the folder of a sweep.
+def report(folder: str | Path) -> list[Status]:
+    """Write the report into the folder of a sweep; returns all its cases, also those missing.
 
     Parameters
     ----------
     folder : path
         That of scripts/sweep.py, or any that has folders of scripts/case.py in it.
-
-    Returns
-    -------
-    list of Status
-        Of all cases, also of those that are missing.
 
     Raises
     ------
@@ -42,110 +35,128 @@ def report(folder):
     """
     folder = Path(folder)
     refuse_other_results(folder)
-    results = read(folder)
+    cases = read(folder)
     own.write_list(folder, own.SWEEP, RESULTS)
-    write_table(results, folder / TABLE)
-    drawn = draw(results, folder)
-    replace_text(folder / PAGE, render(**content(results, drawn, folder)))
-    return [result.status for result in results]
+    write_table(cases, folder / TABLE)
+    drawn = draw(cases, folder)
+    replace_text(folder / PAGE, render(**content(cases, drawn, folder)))
+    return cases
 
 
-def draw(results, folder):
+def draw(cases: list[Status], folder: Path) -> dict[str, str]:
     """Draw the pictures; returns their captions by file name.
 
-    They have alpha_c and beta for axes: with further parameters that vary there are none. A case
-    of which nobody knows the parameters has no place in them.
+    A case of which nobody knows the parameters has no place in them. There are none where two
+    cases have one place, or a parameter is not known of all.
     """
-    results = [result for result in results if result.status.parameters]
-    places = [result.axes for result in results]
-    if (
-        not places
-        or len(set(places)) < len(places)
-        or None in {v for place in places for v in place}
-    ):
+    cases = [case for case in cases if case.parameters]
+    names = varied(cases)
+    placed = {values(case, names): case for case in cases}
+    if not names or len(placed) < len(cases) or None in {v for place in placed for v in place}:
         return {}
-    curves = {r.axes: r for r in results if r.history is not None}
-    ends = {r.axes for r in results if r.status.state == DIVERGED}
+    about = _fields(cases)
+    axes = Axes(names, [about[name]["unit"] if name in about else "-" for name in names])
+    return {**_draw_curves(placed, axes, folder), **_draw_maps(placed, axes, folder)}
+
+
+def _draw_curves(placed, axes, folder):
+    """The plots of the kinds of sail, the first line of each, of all cases."""
+    told = {place: case.history for place, case in placed.items() if case.history}
+    ends = {place for place, case in placed.items() if case.state == DIVERGED}
+    columns = {name: values for history in told.values() for name, values in history.items()}
+    sails = dict.fromkeys(case.about["sail"] for case in placed.values())
+    measures = dict.fromkeys(m for sail in sails for m in (*SAILS[sail].measures, *HUB))
     drawn = {}
-    if curves:
-        rates = {
-            axes: (r.history["time"], r.history["deployment_rate"]) for axes, r in curves.items()
+    for title, unit, factor, (line, *_) in in_plots(measures, columns):
+        curves = {
+            place: (history["time"], factor * history[line.name])
+            for place, history in told.items()
+            if line.name in history
         }
-        phases = {axes: (r.history["time"], r.degrees) for axes, r in curves.items()}
-        plot_curves(rates, ends, "deployment rate [-]", folder / CURVES[0])
-        plot_curves(phases, ends, "mean phase difference [deg]", folder / CURVES[1])
-        drawn |= zip(CURVES, CAPTIONS)
+        plot_curves(curves, ends, f"{title} [{unit}]", folder / picture_of(title), axes)
+        drawn[picture_of(title)] = f"{title.capitalize()}, {line.label}, of all cases over time."
+    return drawn
+
+
+def _draw_maps(placed, axes, folder):
+    """Heat maps of the first outcomes, where two numbers vary."""
+    numbers = all(isinstance(v, (int, float)) for place in placed for v in place)
+    if len(axes.names) != 2 or not numbers:
+        return {}
+    told = outcomes(list(placed.values()))[:MAPPED]
     maps = {
-        f"{name} of the phase difference [{MEASURES[name][0]}]": {
-            r.axes: r.measures[name] for r in results
+        f"{_words(o.name)} [{unit_of(o)[0]}]": {
+            place: measured(case, o) for place, case in placed.items()
         }
-        for name in ("amplitude", "period")
+        for o in told
     }
-    plot_swing(maps, {r.axes: word(r.status) for r in results}, folder / SWING)
-    meanings = "; ".join(f"{name}: {MEASURES[name][1]}" for name in ("amplitude", "period"))
+    plot_maps(maps, {place: word(case) for place, case in placed.items()}, folder / MAPS, axes)
+    meanings = "; ".join(f"{_words(o.name)}: {o.label}" for o in told)
     return {
-        **drawn,
-        SWING: f"The swing over alpha_c and beta. {meanings.capitalize()}. "
-        f"{NOT_SEEN.capitalize()}: the run ends before. Runs of one case that start a nanometre "
-        "apart differ, too: scripts/run.sh verify says by how much.",
+        MAPS: f"Outcomes over {_words(axes.names[0])} and {_words(axes.names[1])}. "
+        f"{meanings.capitalize()}. {NOT_SEEN.capitalize()}: the run ends before. Runs of one case "
+        "that start a nanometre apart differ, too: scripts/run.sh verify says by how much."
     }
 
 
-def word(status):
+def _words(name):
+    return name.replace("_", " ")
+
+
+def word(case: Status) -> str:
     """What stands in a heat map where there is no value."""
-    if status.state == DIVERGED:
-        return "diverged\n" + ("in spin-up" if status.time is None else f"at {status.time:.3g} s")
-    return NOT_SEEN if status.state == COMPLETE else status.state
+    if case.state == DIVERGED:
+        return "diverged\n" + ("in spin-up" if case.time is None else f"at {case.time:.3g} s")
+    return NOT_SEEN if case.state == COMPLETE else case.state
 
 
-def content(results, drawn, folder):
+def _fields(cases):
+    """What is known of the parameters of the cases' kinds of sail, by name."""
+    kinds = [KINDS[case.about["sail"]] for case in cases if case.about]
+    return {item.name: item.metadata for kind in kinds for item in fields(kind)}
+
+
+def content(cases: list[Status], drawn: dict[str, str], folder: Path) -> dict:
     """What the page shows, ready for its template."""
-    parameters = varied(results)
-    known = next((r.status.parameters for r in results if r.status.parameters), {})
-    about = {item.name: item.metadata for item in fields(SailParameters)}
-    units = {name: item["unit"] for name, item in about.items()}
-    states = [result.status.state for result in results]
+    names, told, about = varied(cases), outcomes(cases), _fields(cases)
+    known = next((case.parameters for case in cases if case.parameters), {})
+    states = [case.state for case in cases]
+    units = [about[name]["unit"] if name in about else "-" for name in names]
     return {
         "states": {state: states.count(state) for state in dict.fromkeys(states)},
         "pictures": drawn,
         "columns": [
-            *((name, units.get(name, "-"), "") for name in parameters),
-            *((name, unit, meaning) for name, (unit, meaning) in MEASURES.items()),
+            *((name, unit, "") for name, unit in zip(names, units)),
+            *((o.name, unit_of(o)[0], o.label) for o in told),
         ],
-        "cases": [_row(result, parameters, folder) for result in results],
-        "others": [r.status for r in results if r.status.state != COMPLETE],
+        "cases": [_row(case, names, told, folder) for case in cases],
+        "others": [case for case in cases if case.state != COMPLETE],
         "common": [
             (name, _short(value), about[name]["unit"], about[name]["text"], about[name]["source"])
             for name, value in known.items()
-            if name not in parameters and name in about
+            if name not in names and name in about
         ],
-        "versions": _versions(results),
+        "versions": _versions(cases),
         "table": TABLE,
-        "axes": [name for name in parameters if _varies(results, name)] or AXES,
+        "axes": names,
     }
 
 
-def _varies(results, name):
-    """Whether a parameter is not the same in all cases whose parameters are known."""
-    known = (result.status.parameters for result in results)
-    return len({repr(values[name]) for values in known if name in values}) > 1
-
-
-def _row(result, parameters, folder):
-    """A case as the page shows it."""
-    status = result.status
-    values = [status.parameters.get(name) for name in parameters]
+def _row(case, names, told, folder):
+    """A case as the page shows it; its outcomes with as many digits as all others."""
 
     def place(path):
         return str(path.relative_to(folder)) if path.exists() else ""
 
+    found = (measured(case, outcome) for outcome in told)
     return {
-        "name": status.name,
-        "state": status.state,
-        "place": place(status.folder),
-        "page": place(status.folder / PAGE),
-        "shapes": place(status.folder / "shapes.png"),
-        "values": [_short(v) for v in values] + [_measure(v) for v in result.measures.values()],
+        "name": case.name,
+        "state": case.state,
+        "place": place(case.folder),
+        "page": place(case.folder / PAGE),
+        "shapes": place(case.folder / "shapes.png"),
+        "values": [_short(v) for v in values(case, names)]
+        + ["" if value is None else three_digits(value) for value in found],
     }
 
 
@@ -156,15 +167,10 @@ def _short(value):
     return f"{value:.7g}" if isinstance(value, float) else str(value)
 
 
-def _measure(value):
-    """A measure with as many digits as all others, as in the heat maps."""
-    return "" if value is None else three_digits(value)
-
-
-def _versions(results):
+def _versions(cases):
     """Versions by name; where cases differ, all of them."""
     found = {}
-    for result in results:
-        for name, value in result.status.versions.items():
+    for case in cases:
+        for name, value in case.about.get("versions", {}).items():
             found.setdefault(name, []).append(str(value))
     return {name: ", ".join(dict.fromkeys(values)) for name, values in found.items()}

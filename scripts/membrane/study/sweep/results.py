@@ -1,116 +1,97 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the cases of a sweep came to: curves and measures."""
+"""What the cases of a sweep came to: which parameters differ, and what came out."""
 
 import csv
 import io
-from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
-import numpy as np
 from membrane.files import replace_text
-from membrane.measures import first_time_above, lag_and_half_period, swing
-from membrane.results.case_folder import COMPLETE, Status, look
+from membrane.measures import EVERY_OUTCOME, LEDGER_OUTCOMES, Outcome
+from membrane.results.case_folder import Status, look
+from membrane.run.sails import SAILS
 
-from .grid import AXES, case_folders, text
-
-LEVEL = 0.9  # of the deployment rate, whose time is told
-
-# Columns of cases.csv after the parameters: what is measured, its unit and meaning.
-MEASURES = {
-    "final_rate": ("-", "deployment rate at the end"),
-    "largest_rate": ("-", "largest deployment rate"),
-    "time_of_rate_0.9": ("s", f"when the deployment rate first exceeds {LEVEL}"),
-    "amplitude": ("deg", "largest lag of the mean tip behind the spool"),
-    "time_of_amplitude": ("s", "when the largest lag is reached"),
-    "period": ("s", "twice the time from the largest lag to the largest lead that follows"),
-}
+from .grid import case_folders, text
 
 
-@dataclass
-class Result:
-    """A case of a sweep.
+def read(folder: Path) -> list[Status]:
+    """All cases of a sweep in `folder`, by what differs between them; ValueError if there is none.
 
-    Attributes
-    ----------
-    status : Status
-    measures : dict
-        MEASURES by name; None where there is none.
+    A case that does not tell what it is about is about what was planned.
     """
-
-    status: Status
-    measures: dict
-
-    @property
-    def history(self):
-        """CURVES (S,) of its history.csv by name; None where there are none."""
-        return self.status.history
-
-    @property
-    def axes(self):
-        """Values of AXES."""
-        return tuple(self.status.parameters.get(name) for name in AXES)
-
-    @property
-    def degrees(self):
-        """Mean phase difference (S,) [deg]."""
-        return np.degrees(self.history["phase_difference"])
-
-
-def read(folder):
-    """The Results of all cases of a sweep in `folder`, by rising alpha_c and beta."""
     found = []
     for place, planned in case_folders(folder).items():
         status = look(place, planned or None)
-        status.parameters = status.parameters or planned
-        is_complete = status.state == COMPLETE
-        measured = measure(status.history) if is_complete else dict.fromkeys(MEASURES)
-        found.append(Result(status, measured))
+        status.about = status.about or planned
+        found.append(status)
     if not found:
         raise ValueError(f"{folder} holds no case")
-    return sorted(found, key=lambda r: (*(-1 if v is None else v for v in r.axes), r.status.name))
+    names = varied(found)
+    return sorted(found, key=lambda case: ([_rank(v) for v in values(case, names)], case.name))
 
 
-def measure(history):
-    """MEASURES of a history; amplitude and period are None where the run ends before they show."""
-    time, rate, phase = (history[n] for n in ("time", "deployment_rate", "phase_difference"))
-    lag, half = lag_and_half_period(time, phase)
-    lagged = swing(time, phase)["time_of_largest_lag"]
-    return {
-        "final_rate": float(rate[-1]),
-        "largest_rate": float(rate.max()),
-        "time_of_rate_0.9": first_time_above(time, rate, LEVEL),
-        "amplitude": lag if lagged < time[-1] else None,
-        "time_of_amplitude": lagged if lagged < time[-1] else None,
-        "period": 2 * half if 0 < half < time[-1] - lagged else None,
-    }
+def _rank(value):
+    """What a value is sorted by: none, numbers, words."""
+    if value is None:
+        return 0, 0, ""
+    return (2, 0, value) if isinstance(value, str) else (1, value, "")
 
 
-def varied(results):
-    """Names of the parameters that are not the same in all cases; AXES always and first."""
-    known = [r.status.parameters for r in results if r.status.parameters]
+def varied(cases: list[Status]) -> list[str]:
+    """Names of the parameters that are not the same in all cases, "sail" among them."""
+    known = [case.parameters for case in cases if case.parameters]
     names = dict.fromkeys(name for parameters in known for name in parameters)
-    others = [n for n in names if len({repr(p.get(n)) for p in known}) > 1 and n not in AXES]
-    return [*AXES, *others]
+    return [name for name in names if len({repr(p.get(name)) for p in known}) > 1]
 
 
-def write_table(results, path):
+def values(case: Status, names: list[str]) -> tuple:
+    """Those of some parameters of a case; None for what nobody knows."""
+    return tuple(case.parameters.get(name) for name in names)
+
+
+def outcomes(cases: list[Status]) -> list[Outcome]:
+    """Those of the cases' kinds of sail, and what else their summaries tell but of the ledger."""
+    sails = {case.about["sail"] for case in cases if case.about}
+    names = dict.fromkeys(o.name for sail in sails for o in SAILS[sail].outcomes)
+    names |= dict.fromkeys(name for case in cases for name in case.measures)
+    known = {o.name: o for o in EVERY_OUTCOME}
+    names = [n for n in known if n in names] + [n for n in names if n not in known]
+    ledger = {o.name for o in LEDGER_OUTCOMES}
+    return [
+        known.get(n, Outcome(n, "-", n.replace("_", " "), None)) for n in names if n not in ledger
+    ]
+
+
+def unit_of(outcome: Outcome) -> tuple[str, float]:
+    """The unit that is shown, and its factor from SI."""
+    return outcome.shown or (outcome.unit, 1.0)
+
+
+def measured(case: Status, outcome: Outcome) -> float | None:
+    """An outcome of a case in the unit that is shown; None if there is none."""
+    value = case.measures.get(outcome.name)
+    return None if value is None else unit_of(outcome)[1] * value
+
+
+def write_table(cases: list[Status], path: Path) -> None:
     """cases.csv: one row a case; what there is not is left empty."""
-    parameters = varied(results)
+    names, told = varied(cases), outcomes(cases)
     stream = io.StringIO()
     rows = csv.writer(stream, lineterminator="\n")
-    measures = [name if unit == "-" else f"{name}_{unit}" for name, (unit, _) in MEASURES.items()]
-    rows.writerow(["case", *parameters, "outcome", "diverged_at_s", *measures, "reason"])
-    for result in results:
-        status = result.status
-        rows.writerow(
-            [status.name]
-            + [_plain(status.parameters.get(name)) for name in parameters]
-            + [status.state, _plain(status.time)]
-            + [_plain(result.measures[name]) for name in MEASURES]
-            + [status.reason]
-        )
+    rows.writerow(["case", *names, "outcome", "diverged_at_s", *map(_column, told), "reason"])
+    for case in cases:
+        found = (measured(case, outcome) for outcome in told)
+        cells = [case.name, *values(case, names), case.state, case.time, *found, case.reason]
+        rows.writerow([_plain(cell) for cell in cells])
     replace_text(path, stream.getvalue())
 
 
-def _plain(value):
+def _column(outcome):
+    """Name of an outcome's column."""
+    unit = unit_of(outcome)[0].replace(" ", "_")
+    return outcome.name if unit == "-" else f"{outcome.name}_{unit}"
+
+
+def _plain(value: Any):
     """A value as it goes into the table."""
     return "" if value is None else text(value)
