@@ -123,6 +123,20 @@ class TestScripts(unittest.TestCase):
         self.assertEqual(status, 0, said)
         self.assertGreater((scratch() / "now.png").stat().st_size, 10000)
 
+    def test_a_sweep_from_a_file(self):
+        (config,) = blocks(GUIDE / "many-runs.md", "yaml")
+        (scratch() / "mine.yaml").write_text(config, encoding="utf-8")
+        sweep = ["/usr/bin/python3", ROOT / "scripts" / "sweep.py", "--config", "mine.yaml"]
+        done = subprocess.run(
+            [*sweep, "--dry-run"],
+            cwd=scratch(),
+            env=yade_environment(),
+            capture_output=True,
+            text=True,
+        )
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(len(done.stdout.splitlines()), 4)  # two values of two parameters
+
     def test_tiny(self):
         """As a file among the kinds of sails it is one, whose name the commands know."""
         package, home = Path(membrane.__file__).parent, scratch() / "with_tiny"
