@@ -49,7 +49,7 @@ struct MembraneLedger::Tally {
     Real kinetic = 0., potential = 0., momentum = 0.;
     bool all = false; ///< energies and arriving powers are known
 
-    Tally(const ::membrane::MotionSums& moved, std::size_t entries, bool all)
+    Tally(const ::membrane::MotionSums& moved, std::size_t entries, bool wanted)
         : arriving(entries, 0.), mean(entries, 0.), kinetic(moved.kinetic), potential(moved.potential),
           momentum(moved.angularMomentum), all(wanted) {
         mean[impulseEntry] = moved.torque;

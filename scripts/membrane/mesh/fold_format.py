@@ -8,14 +8,20 @@ that the rest of the package uses.
 
 What can be computed from vertices, edges and faces (`vertices_edges`, `faces_faces`, …) and the
 stacking of layers (`faceOrders`) is neither read nor written. Keys with a colon are anybody's own
-data; they are kept.
+data; they are kept. What keys may hold is in the tables FILE and FRAME, which `_checked` walks;
+jsonschema would take six times as long as all else, and say no more than "[1] is too short".
 """
 
 import json
 import math
+from collections.abc import Callable, Container
 from dataclasses import dataclass, field
+from operator import eq
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..files import BadFile, is_value, read_object, replace_text, shown
 from ..geometry import MOUNTAIN, VALLEY
@@ -36,9 +42,6 @@ MOST_ENTRIES = 50_000_000  # numbers in all frames together, once those inherite
 FARTHEST = 1e12  # of coordinates, in any unit
 ROUNDED = 1e-6  # degrees beyond 180 that are taken for an error of rounding
 LARGEST_ID = 2**31 - 1
-
-_TEXTS = {"title": "frame_title", "description": "frame_description", "author": "frame_author"}
-_FILE_TEXTS = ("file_creator", "file_author", "file_title", "file_description")
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,21 +70,21 @@ class FoldFrame:
         By key, whose name has a colon; anything that JSON can hold.
     """
 
-    coords: np.ndarray = None
-    edges: np.ndarray = None
-    letters: np.ndarray = None
-    angles: np.ndarray = None
-    faces: tuple = None
+    coords: np.ndarray | None = None
+    edges: np.ndarray | None = None
+    letters: np.ndarray | None = None
+    angles: np.ndarray | None = None
+    faces: tuple[np.ndarray, ...] | None = None
     unit: str = "unit"
-    classes: tuple = ()
-    attributes: tuple = ()
+    classes: tuple[str, ...] = ()
+    attributes: tuple[str, ...] = ()
     title: str = ""
     description: str = ""
     author: str = ""
-    custom: dict = field(default_factory=dict)
+    custom: dict[str, Any] = field(default_factory=dict)
 
     @property
-    def metre(self):
+    def metre(self) -> float | None:
         """Length [m] of the frame's unit; None if it is not a physical one."""
         return UNITS.get(self.unit)
 
@@ -99,12 +102,12 @@ class FoldFile:
         As "singleModel", "animation".
     """
 
-    frames: tuple
-    texts: dict = field(default_factory=dict)
-    classes: tuple = ()
+    frames: tuple[FoldFrame, ...]
+    texts: dict[str, str] = field(default_factory=dict)
+    classes: tuple[str, ...] = ()
 
 
-def fold_angles(angles, signs):
+def fold_angles(angles: ArrayLike, signs: ArrayLike) -> np.ndarray:
     """Fold angles [deg] of creases, in [-180, 180], positive valley.
 
     Parameters
@@ -119,7 +122,7 @@ def fold_angles(angles, signs):
     return turned - 360 * np.round(turned / 360)
 
 
-def crease_angles(angles):
+def crease_angles(angles: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """Angles [rad] in [0, pi] between the faces at creases, and their signs, from fold angles.
 
     Parameters
@@ -134,14 +137,139 @@ def crease_angles(angles):
     signs : (C,) int
         +1 mountain, -1 valley.
     """
-    angles = np.asarray(angles, dtype=float)
-    return math.pi - np.radians(np.abs(angles)), np.where(angles < 0, MOUNTAIN, VALLEY)
+    turned = np.asarray(angles, dtype=float)
+    return math.pi - np.radians(np.abs(turned)), np.where(turned < 0, MOUNTAIN, VALLEY)
+
+
+# ------------------------------------------------------------------------- what keys may hold
+
+
+class _Rule(NamedTuple):
+    """What a key holds: one entry or, if they have a `plural`, a list of them, or of lists."""
+
+    name: str  # of the attribute of a FoldFrame
+    fits: Callable[[Any, int], bool]  # whether an entry is right, given the number of vertices
+    wrong: str  # what is said of one that is not
+    plural: str = ""
+    of_edges: bool = False  # as many as there are edges
+    lengths: Container[int] = ()  # of lists in the list
+    length: str = ""  # what is said of others
+    make: Callable[[Any], Any] = tuple  # what the attribute becomes
+
+
+def _array(values, dtype, *shape):
+    """A read-only array."""
+    array = np.array(values, dtype=dtype).reshape(shape or -1)
+    array.setflags(write=False)
+    return array
+
+
+def _is_text(value, _=0):
+    return isinstance(value, str)
+
+
+def _is_number(value, most):
+    return type(value) in (int, float) and abs(value) <= most  # a bool is an int, too
+
+
+def _is_id(value, count):
+    return type(value) is int and 0 <= value < count
+
+
+_TEXT, _TEXTS = "must be a text, not {}", "is {}; must be a list of texts"
+_NO_VERTEX = "names {}, which is no vertex{}"
+FILE = {
+    "file_creator": _Rule("", _is_text, _TEXT, make=str),
+    "file_author": _Rule("", _is_text, _TEXT, make=str),
+    "file_title": _Rule("", _is_text, _TEXT, make=str),
+    "file_description": _Rule("", _is_text, _TEXT, make=str),
+    "file_classes": _Rule("", _is_text, _TEXTS, "texts"),
+    "file_frames": _Rule(
+        "", lambda x, _: isinstance(x, dict), "is {}; must be a list of objects", "objects"
+    ),
+}
+_ANGLES = _Rule(
+    "angles",
+    lambda x, _: x is None or _is_number(x, 180 + ROUNDED),
+    "is {}; must be degrees from -180 to 180",
+    "angles",
+    of_edges=True,
+    make=lambda angles: _array(np.clip(np.array(angles, dtype=float), -180, 180), float),
+)
+FRAME = {
+    "frame_classes": _Rule("classes", _is_text, _TEXTS, "texts"),
+    "frame_attributes": _Rule("attributes", _is_text, _TEXTS, "texts"),
+    "frame_unit": _Rule("unit", _is_text, _TEXT, make=lambda unit: unit or "unit"),
+    "frame_title": _Rule("title", _is_text, _TEXT, make=str),
+    "frame_description": _Rule("description", _is_text, _TEXT, make=str),
+    "frame_author": _Rule("author", _is_text, _TEXT, make=str),
+    "vertices_coords": _Rule(
+        "coords",
+        lambda x, _: _is_number(x, FARTHEST),
+        f"holds {{}}; must be numbers up to {FARTHEST:g}",
+        "coordinates",
+        lengths=(2, 3),
+        length="must be 2 or 3",
+        make=lambda points: _array([(*p, 0.0)[:3] for p in points], float, -1, 3),
+    ),
+    "edges_vertices": _Rule(
+        "edges",
+        _is_id,
+        _NO_VERTEX,
+        "vertices",
+        lengths=(2,),
+        length="an edge has 2",
+        make=lambda pairs: _array(pairs, int, -1, 2),
+    ),
+    "edges_assignment": _Rule(
+        "letters",
+        lambda x, _: x in [*LETTERS],
+        f"is {{}}; must be one of {', '.join(LETTERS)}",
+        "letters",
+        of_edges=True,
+        make=lambda letters: _array(letters, "<U1"),
+    ),
+    "edges_foldAngles": _ANGLES,  # of specification 1.0
+    "edges_foldAngle": _ANGLES,
+    "faces_vertices": _Rule(
+        "faces",
+        _is_id,
+        _NO_VERTEX,
+        "vertices",
+        lengths=range(3, LARGEST_ID),
+        length="a face has 3 or more",
+        make=lambda loops: tuple(_array(loop, int) for loop in loops),
+    ),
+}
+KEYS = {rule.name: key for key, rule in FRAME.items()}  # to write
+
+
+def _checked(path, place, value, rule, vertices=LARGEST_ID, edges=0):
+    """What a value becomes by its rule; BadFile if it breaks it."""
+    if rule.plural and not isinstance(value, list):
+        raise BadFile(path, place, f"must be a list, not {shown(value)}")
+    if rule.of_edges and len(value) != edges:
+        raise BadFile(path, place, f"has {len(value)} {rule.plural} for {edges} edges")
+    last = f"; the last is {vertices - 1}" if vertices < LARGEST_ID else ""
+    for i, item in enumerate(value if rule.plural else (value,)):
+        here = f"{place}[{i}]" if rule.plural else place
+        if rule.lengths and not isinstance(item, list):
+            raise BadFile(path, here, f"is {shown(item)}; must be a list of {rule.plural}")
+        if rule.lengths and len(item) not in rule.lengths:
+            raise BadFile(path, here, f"has {len(item)} {rule.plural}; {rule.length}")
+        for entry in item if rule.lengths else (item,):
+            if not rule.fits(entry, vertices):
+                raise BadFile(path, here, rule.wrong.format(shown(entry), last))
+        if rule.plural == "vertices" and any(map(eq, item, item[1:] + item[:1])):
+            vertex = next(a for a, b in zip(item, item[1:] + item[:1]) if a == b)
+            raise BadFile(path, here, f"joins vertex {vertex} to itself")
+    return rule.make(value)
 
 
 # ---------------------------------------------------------------------------------------- reading
 
 
-def read_fold(path):
+def read_fold(path: str | Path) -> FoldFile:
     """Read a FOLD file.
 
     Returns
@@ -158,7 +286,8 @@ def read_fold(path):
     """
     top = read_object(path)
     _check_spec(path, top)
-    others = _list(path, "file_frames", top.get("file_frames", []), dict, "objects")
+    about = {key: _checked(path, key, top[key], rule) for key, rule in FILE.items() if key in top}
+    others, classes = about.pop("file_frames", ()), about.pop("file_classes", ())
     if len(others) >= MOST_FRAMES:
         raise BadFile(path, "file_frames", f"has {len(others)} frames, {MOST_FRAMES} at most")
     key_frame = {key: value for key, value in top.items() if not key.startswith("file_")}
@@ -166,8 +295,7 @@ def read_fold(path):
     _check_size(path, raw)
     reader = _FrameReader(path)
     frames = tuple(reader.frame(number, found) for number, found in enumerate(raw))
-    texts = {name: _text(path, name, top[name]) for name in _FILE_TEXTS if name in top}
-    return FoldFile(frames, texts, _strings(path, "file_classes", top.get("file_classes", [])))
+    return FoldFile(frames, about, classes)
 
 
 def _check_spec(path, top):
@@ -176,7 +304,7 @@ def _check_spec(path, top):
     number = spec
     if isinstance(spec, str) and is_value(spec):  # as some programs write it
         number = float(spec)
-    if not _is_number(number) or not 1 <= number < 2:
+    if not (_is_number(number, 2) and 1 <= number < 2):
         raise BadFile(path, "file_spec", f"is {shown(spec)}; specifications 1 to 1.2 are read")
 
 
@@ -186,9 +314,9 @@ def _inherited(path, raw):
     A frame's parent may stand anywhere in the file; a circle of parents is refused.
     """
     parents = [_parent(path, number, frame, len(raw)) for number, frame in enumerate(raw)]
-    done = {}
+    done: dict = {}
     for number in range(len(raw)):
-        chain = []
+        chain: list = []
         while number is not None and number not in done:
             if number in chain:
                 circle = " -> ".join(map(str, [*chain[chain.index(number) :], number][:12]))
@@ -236,67 +364,46 @@ class _FrameReader:
 
     def __init__(self, path):
         self.path = path
-        self._converted = {}
+        self._made: dict = {}
 
     def frame(self, number, raw):
         """The FoldFrame of one object."""
+        found: dict = {}
+        for key, rule in FRAME.items():
+            if key in raw:
+                vertices = len(found["coords"]) if "coords" in found else LARGEST_ID
+                about = vertices, len(found.get("edges", ()))
+                # The objects live as long as the file is read, so that their ids stay theirs.
+                name = key, id(raw[key]), *about
+                if name not in self._made:
+                    place = _place(number, key)
+                    self._made[name] = _checked(self.path, place, raw[key], rule, *about)
+                found[rule.name] = self._made[name]
+        if "edges" not in found:  # empty lists, if any
+            found |= {"letters": None, "angles": None}
+        if found.get("angles") is not None:
+            found["angles"] = self._angles(number, found.get("letters"), found["angles"])
+        return FoldFrame(**found, custom={key: raw[key] for key in raw if ":" in key})
 
-        def get(name, convert, *about):
-            if name not in raw:
-                return None
-            # The objects live as long as the file is read, so that their ids stay theirs.
-            key = (name, id(raw[name]), *about)
-            if key not in self._converted:
-                self._converted[key] = convert(self.path, _place(number, name), raw[name], *about)
-            return self._converted[key]
-
-        coords = get("vertices_coords", _coords)
-        count = LARGEST_ID if coords is None else len(coords)
-        edges = get("edges_vertices", _edges, count)
-        size = 0 if edges is None else len(edges)
-        letters = get("edges_assignment", _letters, size)
-        name = "edges_foldAngle" if "edges_foldAngle" in raw else "edges_foldAngles"  # 1.0's name
-        angles = self._without_gaps(number, letters, get(name, _angles, size))
-        self._check_directions(number, letters, angles)
-        if edges is None:  # empty lists, if any
-            letters = angles = None
-        return FoldFrame(
-            coords=coords,
-            edges=edges,
-            letters=letters,
-            angles=angles,
-            faces=get("faces_vertices", _faces, count),
-            unit=get("frame_unit", _text) or "unit",
-            classes=get("frame_classes", _strings) or (),
-            attributes=get("frame_attributes", _strings) or (),
-            **{name: get(key, _text) or "" for name, key in _TEXTS.items()},
-            custom={key: value for key, value in raw.items() if ":" in key},
-        )
-
-    def _without_gaps(self, number, letters, angles):
-        """The angles (E,), 0 for null, which Origami Simulator writes where an edge has none."""
-        gaps = np.zeros(0, dtype=bool) if angles is None else np.isnan(angles)
-        if not np.any(gaps):
-            return angles
-        folds = gaps if letters is None else gaps & np.isin(letters, ("M", "V"))
-        if np.any(folds):
-            place = _place(number, f"edges_foldAngle[{int(np.argmax(folds))}]")
-            raise BadFile(self.path, place, "has no angle (null)")
-        return _frozen(np.where(gaps, 0.0, angles))
-
-    def _check_directions(self, number, letters, angles):
-        """Refuse mountains with a valley's angle, and the other way about."""
-        if letters is None or angles is None:
-            return
-        wrong = ((letters == "M") & (angles > 0)) | ((letters == "V") & (angles < 0))
-        if np.any(wrong):
-            e = int(np.argmax(wrong))
-            raise BadFile(
-                self.path,
-                _place(number, f"edges_foldAngle[{e}]"),
-                f"is {angles[e]:g} degrees, but its edge is {letters[e]}; "
-                "mountains have negative angles, valleys positive ones",
-            )
+    def _angles(self, number, letters, angles):
+        """The angles (E,), 0 for null on edges that do not fold; refused where letters differ."""
+        gaps = np.isnan(angles)  # Origami Simulator writes null where an edge has no angle
+        folds = letters is None or np.isin(letters, ("M", "V"))
+        other_way = (letters == "M") & (angles > 0) | (letters == "V") & (angles < 0)
+        for wrong, said in (
+            (gaps & folds, "has no angle (null)"),
+            (
+                other_way,
+                "is {:g} degrees, but its edge is {}; mountains have negative angles, valleys "
+                "positive ones",
+            ),
+        ):
+            if np.any(wrong):
+                e = int(np.argmax(wrong))
+                place = _place(number, f"edges_foldAngle[{e}]")
+                letter = "" if letters is None else letters[e]
+                raise BadFile(self.path, place, said.format(angles[e], letter))
+        return _array(np.where(gaps, 0.0, angles), float) if np.any(gaps) else angles
 
 
 def _place(number, name):
@@ -304,116 +411,10 @@ def _place(number, name):
     return name if number == 0 else f"file_frames[{number - 1}].{name}"
 
 
-def _is_number(value):
-    return type(value) in (int, float)  # a bool is an int, too
-
-
-def _is_id(value, count):
-    return type(value) is int and 0 <= value < count
-
-
-def _list(path, place, value, kind, words):
-    """`value`, if it is a list of `kind`."""
-    if not isinstance(value, list):
-        raise BadFile(path, place, f"must be a list, not {shown(value)}")
-    for i, item in enumerate(value):
-        if not isinstance(item, kind):
-            raise BadFile(path, f"{place}[{i}]", f"is {shown(item)}; must be a list of {words}")
-    return value
-
-
-def _text(path, place, value):
-    if not isinstance(value, str):
-        raise BadFile(path, place, f"must be a text, not {shown(value)}")
-    return value
-
-
-def _strings(path, place, value):
-    return tuple(_list(path, place, value, str, "texts"))
-
-
-def _coords(path, place, value):
-    """Coordinates (V, 3) from a list of pairs or triples."""
-    points = _list(path, place, value, list, "coordinates")
-    for i, point in enumerate(points):
-        if len(point) not in (2, 3):
-            raise BadFile(path, f"{place}[{i}]", f"has {len(point)} coordinates; must be 2 or 3")
-        for x in point:
-            if not (_is_number(x) and abs(x) <= FARTHEST):
-                raise BadFile(
-                    path, f"{place}[{i}]", f"holds {shown(x)}; must be numbers up to {FARTHEST:g}"
-                )
-    return _frozen(np.array([(*p, 0.0)[:3] for p in points], dtype=float).reshape(-1, 3))
-
-
-def _ids(path, place, value, count):
-    """`value`, a list of ids of vertices, none twice in a row."""
-    for i, vertex in enumerate(value):
-        if not _is_id(vertex, count):
-            last = f"; the last is {count - 1}" if count < LARGEST_ID else ""
-            raise BadFile(path, place, f"names {shown(vertex)}, which is no vertex{last}")
-        if vertex == value[i - 1]:
-            raise BadFile(path, place, f"joins vertex {vertex} to itself")
-    return value
-
-
-def _edges(path, place, value, count):
-    """Edges (E, 2)."""
-    pairs = _list(path, place, value, list, "two vertices")
-    for i, pair in enumerate(pairs):
-        if len(pair) != 2:
-            raise BadFile(path, f"{place}[{i}]", f"has {len(pair)} vertices; an edge has 2")
-        _ids(path, f"{place}[{i}]", pair, count)
-    return _frozen(np.array(pairs, dtype=int).reshape(-1, 2))
-
-
-def _faces(path, place, value, count):
-    """Faces, each (n,)."""
-    loops = _list(path, place, value, list, "vertices")
-    for i, loop in enumerate(loops):
-        if len(loop) < 3:
-            raise BadFile(path, f"{place}[{i}]", f"has {len(loop)} vertices; a face has 3 or more")
-        _ids(path, f"{place}[{i}]", loop, count)
-    return tuple(_frozen(np.array(loop, dtype=int)) for loop in loops)
-
-
-def _per_edge(path, place, value, size, words):
-    """`value`, if it is a list with one entry for each edge."""
-    if not isinstance(value, list) or len(value) != size:
-        given = f"{len(value)} {words}" if isinstance(value, list) else shown(value)
-        raise BadFile(path, place, f"has {given} for {size} edges")
-    return value
-
-
-def _letters(path, place, value, size):
-    """Assignments (E,)."""
-    for i, letter in enumerate(_per_edge(path, place, value, size, "letters")):
-        if not (isinstance(letter, str) and len(letter) == 1 and letter in LETTERS):
-            raise BadFile(
-                path, f"{place}[{i}]", f"is {shown(letter)}; must be one of {', '.join(LETTERS)}"
-            )
-    return _frozen(np.array(value, dtype="<U1"))
-
-
-def _angles(path, place, value, size):
-    """Fold angles (E,) [deg], not a number for null."""
-    for i, angle in enumerate(_per_edge(path, place, value, size, "angles")):
-        if angle is not None and not (_is_number(angle) and abs(angle) <= 180 + ROUNDED):
-            raise BadFile(
-                path, f"{place}[{i}]", f"is {shown(angle)}; must be degrees from -180 to 180"
-            )
-    return _frozen(np.clip(np.array(value, dtype=float), -180, 180))
-
-
-def _frozen(array):
-    array.setflags(write=False)
-    return array
-
-
 # ---------------------------------------------------------------------------------------- writing
 
 
-def write_fold(path, content):
+def write_fold(path: str | Path, content: FoldFile) -> None:
     """Write a FOLD file, all of it or nothing.
 
     Parameters
@@ -444,22 +445,9 @@ def write_fold(path, content):
 
 def _as_dict(path, number, frame):
     """A frame as an object of JSON; refused if it could not be read back."""
-    arrays = {
-        "vertices_coords": frame.coords,
-        "edges_vertices": frame.edges,
-        "edges_assignment": frame.letters,
-        "edges_foldAngle": frame.angles,
-    }
-    texts = {key: getattr(frame, name) for name, key in _TEXTS.items()}
-    found = {
-        "frame_classes": list(frame.classes),
-        "frame_attributes": list(frame.attributes),
-        "frame_unit": frame.unit,
-        **{key: text for key, text in texts.items() if text},
-        **{key: np.asarray(array).tolist() for key, array in arrays.items() if array is not None},
-    }
-    if frame.faces is not None:
-        found["faces_vertices"] = [np.asarray(face).tolist() for face in frame.faces]
+    values = {key: getattr(frame, name) for name, key in KEYS.items()}
+    found = {key: _plain(value) for key, value in values.items() if value is not None}
+    found = {key: value for key, value in found.items() if value != ""}
     _FrameReader(path).frame(number, found)
     for key in frame.custom:
         if ":" not in key:
@@ -467,18 +455,18 @@ def _as_dict(path, number, frame):
     return found | frame.custom
 
 
+def _plain(value):
+    """An attribute of a frame as JSON has it."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return [_plain(item) for item in value] if isinstance(value, (tuple, list)) else value
+
+
 def _child(found, frame, first, key_frame):
     """A later frame as an object of JSON (`found`), without what it shares with the key frame."""
     if not found.keys() >= first.keys():
         return found  # it would inherit what it does not have
-    names = {
-        "vertices_coords": "coords",
-        "edges_vertices": "edges",
-        "edges_assignment": "letters",
-        "edges_foldAngle": "angles",
-        "faces_vertices": "faces",
-    }
-    shared = {k for k, name in names.items() if getattr(frame, name) is getattr(key_frame, name)}
+    shared = {k for name, k in KEYS.items() if getattr(frame, name) is getattr(key_frame, name)}
     shared |= {k for k, value in frame.custom.items() if value is key_frame.custom.get(k)}
     own = {key: value for key, value in found.items() if key not in shared}
     return {"frame_parent": 0, "frame_inherit": True, **own}

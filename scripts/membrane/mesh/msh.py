@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Meshes of gmsh (.msh, versions 2 to 2.2, 4.0 and 4.1, text or binary), read by gmsh itself.
 
-gmsh is silent about what it leaves out of a damaged file, so what it gives is held against the
-file's sections. In version 2 it would give a group that some elements of a curve or surface are in
-to all of them: there the elements are taken from the file, as they are.
+Not by meshio, which reads neither gmsh's own 4.0 nor what is partitioned, parametric or in no
+group, and takes a node 0 for the last one. What gmsh is silent about is held against its counts.
 
 Physical groups of curves named M or mountain, V or valley become creases; all named groups are
 kept by name, so that a group of points "tips" can bear masses and a group "hub" be driven.
@@ -11,12 +10,12 @@ kept by name, so that a group of points "tips" can bear masses and a group "hub"
 
 import os
 import re
-from functools import lru_cache
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from ..files import BadFile, read_bytes, shown
+from ..files import BadFile, is_value, read_bytes, shown
 from ..geometry import MOUNTAIN, VALLEY, area_vectors, cut_quadrangles, nearness, pieces, twins
 from ..geometry import unique_sides
 from .gmsh_process import GmshError, in_gmsh
@@ -25,14 +24,13 @@ from .pattern_mesh import SheetMesh
 
 CREASES = {"m": MOUNTAIN, "mountain": MOUNTAIN, "v": VALLEY, "valley": VALLEY}
 FARTHEST = 1e12  # of coordinates, in any unit
-SECTIONS = ("MeshFormat", "PhysicalNames", "Entities", "PartitionedEntities")
-SECTIONS += ("Nodes", "ParametricNodes", "Elements")
+HEAD = re.compile(rb"^\$MeshFormat\s+(\S+) +(\S+) +(\S+)", re.MULTILINE)
 NAME = re.compile(r'^ *([0-3]) +(-?\d{1,9}) +"([^"]{1,200})" *\r?$', re.MULTILINE)
-BEGINS = re.compile(r"^Info: \d+ (entities|nodes|elements)$")
+BEGINS = re.compile(r"^Info: (\d+) (entit|node|element)")
 READ = "versions 2 to 2.2, 4.0 and 4.1 are read"
 
 
-def read_msh(path, unit=1.0):
+def read_msh(path: str | Path, unit: float = 1.0) -> SheetMesh:
     """Read a triangulated sheet.
 
     Quadrangles are cut in two, of elements of higher order the corners are taken; nodes that no
@@ -41,13 +39,9 @@ def read_msh(path, unit=1.0):
 
     Parameters
     ----------
-    path : path
-    unit : float
+    path
+    unit
         Length of the file's unit [m].
-
-    Returns
-    -------
-    SheetMesh
 
     Raises
     ------
@@ -60,10 +54,10 @@ def read_msh(path, unit=1.0):
         raise ValueError(f"unit = {unit} m: must be finite and > 0")
     content = read_bytes(path).lstrip()
     try:
-        sections = _sections(content)
-        version, binary = _format(sections["MeshFormat"])
-        names = _names(sections.get("PhysicalNames"))
-        points, blocks = in_gmsh(_read, content, version, binary)
+        version, is_text = _format(content)
+        _check_sections(content, by_line=is_text and version < 4)
+        names = _names(content)
+        points, blocks = in_gmsh(_read, content, version < 4)
         return _sheet(unit * points, blocks, names, version)
     except GmshError as error:
         raise BadFile(path, "", f"gmsh cannot read it: {error}") from None
@@ -74,53 +68,44 @@ def read_msh(path, unit=1.0):
 # ------------------------------------------------------------------------- the file as it is
 
 
-def _sections(content):
-    """Contents (bytes) of the SECTIONS that there are, by name."""
+def _format(content):
+    """Version as a number, and whether the file is text; refused if it is no mesh of gmsh."""
+    head = HEAD.search(content)
     # Whatever begins otherwise gmsh would run as a script.
-    if not content.startswith((b"$MeshFormat", b"$Comments")):
+    if not (head and content.startswith((b"$MeshFormat", b"$Comments"))):
         raise ValueError("does not begin with $MeshFormat: it is no mesh of gmsh")
-    found = {}
-    for name in SECTIONS:
-        begin = list(re.finditer(rb"(?m)^\$%s[ \t\r]*\n" % name.encode(), content))
-        if len(begin) > 1:
-            raise ValueError(f"${name}: is there twice")
-        if begin:
-            end = content.find(b"$End" + name.encode(), begin[0].end())
-            if end < 0:
-                raise ValueError(f"${name}: is cut off: there is no $End{name}")
-            found[name] = content[begin[0].end() : end]
-    for name in ("MeshFormat", "Nodes", "Elements"):
-        if not {name, f"Parametric{name}"} & set(found):
-            raise ValueError(f"${name}: is missing")
-    return found
-
-
-def _format(section):
-    """Version as a number, and whether the file is binary."""
-    line, _, rest = section.partition(b"\n")
-    words = line.split() or [b""]
-    try:
-        version = float(words[0])
-    except ValueError:
-        version = np.nan
-    if not (2 <= version <= 2.2 or version in (4.0, 4.1)):
-        told = shown(words[0].decode("ascii", "replace"))
-        raise ValueError(f"$MeshFormat: is of version {told}; {READ}")
-    if words[1:] not in ([b"0", b"8"], [b"1", b"8"]):
+    version, kind, size = (word.decode("ascii", "replace") for word in head.groups())
+    if not (is_value(version) and (2 <= float(version) <= 2.2 or float(version) in (4.0, 4.1))):
+        raise ValueError(f"$MeshFormat: is of version {shown(version)}; {READ}")
+    if kind not in ("0", "1") or size != "8":
         raise ValueError("$MeshFormat: must be text or binary (0 or 1), of size 8")
-    binary = words[1] == b"1"
-    if binary and not rest.startswith(np.array([1], "<i4").tobytes()):
-        raise ValueError("$MeshFormat: has the bytes of its numbers reversed")
-    return version, binary
+    return float(version), kind == "0"
 
 
-def _names(section):
+def _check_sections(content, by_line):
+    """Refuse a section that is not there once, or (`by_line`) has other lines than its count says.
+
+    In version 2 gmsh crashes where there are more nodes, and leaves out further elements.
+    """
+    nodes = "ParametricNodes" if b"$ParametricNodes" in content else "Nodes"
+    for name in (nodes, "Elements"):
+        begin, end = b"$" + name.encode(), b"$End" + name.encode()
+        if content.count(begin) != 1:
+            raise ValueError(f"${name}: is {'there twice' if begin in content else 'missing'}")
+        lines, there, _ = content.partition(begin)[2].partition(end)
+        if not there:
+            raise ValueError(f"${name}: is cut off: there is no $End{name}")
+        count, *lines = lines.strip().splitlines() or [b""]
+        if by_line and count.strip() != b"%d" % len(lines):
+            raise ValueError(f"${name}: does not hold as many lines as its count says")
+
+
+def _names(content):
     """Names of physical groups: list of (name, dimension, tag)."""
-    if section is None:
-        return []
-    text = section.decode("utf-8", "replace")
-    names = [(name, int(dim), int(tag)) for dim, tag, name in NAME.findall(text)]
-    if text.split()[:1] != [str(len(names))] or len(text.strip().splitlines()) != 1 + len(names):
+    section = content.partition(b"$PhysicalNames")[2].partition(b"$End")[0]
+    count, _, lines = section.decode("utf-8", "replace").strip().partition("\n")
+    names = [(name, int(dim), int(tag)) for dim, tag, name in NAME.findall(lines)]
+    if (count.strip() or "0") != str(len(names)):
         raise ValueError("$PhysicalNames: does not hold the names that its count says")
     return names
 
@@ -128,51 +113,42 @@ def _names(section):
 # -------------------------------------------------------------------- in a process of its own
 
 
-class _Kind(NamedTuple):
-    """Of elements; `nodes`: how many each has, the first `corners` of them at its corners."""
+class _Block(NamedTuple):
+    """Elements of one kind: their corners (n, k), and the tags of the groups that they are in."""
 
     dimension: int
     order: int
-    nodes: int
-    corners: int
+    corners: np.ndarray
+    groups: list
 
 
-def _read(gmsh, content, version, binary):
-    """Points (N, 3) and blocks of elements of a file's content.
-
-    A block is the _Kind of its elements, their corners (n, k) as rows of the points, and the tags
-    of the groups that they are in.
-    """
-    sections = _sections(content)
-
-    @lru_cache(None)
-    def kind_of(number):
-        return _kind_of(gmsh, number)
-
-    if version < 4:
-        _check_nodes_of_version_2(sections, binary)
-        found = _elements_of_version_2(sections["Elements"], binary, kind_of)
-    _load(gmsh, content)
-    if version >= 4:
-        found = _elements_of_version_4(gmsh, sections["Elements"], version, binary, kind_of)
+def _read(gmsh, content, is_old):
+    """Points (N, 3) and list of _Block, whose corners are rows of the points."""
+    # An element of version 2 has a group of its own: gmsh else gives it to the whole entity.
+    gmsh.option.setNumber("Mesh.SwitchElementTags", is_old)
+    gmsh.option.setNumber("Mesh.PartitionConvertMsh2", 0)
+    count = _load(gmsh, content)
     tags, points, _ = gmsh.model.mesh.getNodes()
     order = np.argsort(tags)
-    tags, points = tags[order].astype(int), points.reshape(-1, 3)[order]
-    if not np.all(np.abs(points) <= FARTHEST):
-        row = int(np.argmax(~np.all(np.abs(points) <= FARTHEST, axis=1)))
+    tags, points = tags[order], points.reshape(-1, 3)[order]
+    wrong = ~np.all(np.abs(points) <= FARTHEST, axis=1)
+    if np.any(wrong):
+        row = np.argmax(wrong)
         raise ValueError(f"$Nodes: node {tags[row]} lies at {points[row].tolist()}")
     blocks = []
-    for kind, nodes, groups in found:
-        corners = nodes[:, : kind.corners]
-        rows = np.searchsorted(tags, corners).clip(max=len(tags) - 1)
-        if np.any(tags[rows] != corners):
-            raise ValueError("$Elements: names a node that is not in $Nodes")
-        blocks.append((kind, rows, groups))
+    for entity in gmsh.model.getEntities():
+        if is_old and entity[1] < 0:  # which is to gmsh as much as all
+            raise ValueError(f"$Elements: are in a group of number {entity[1]}")
+        groups = [entity[1]] if is_old else gmsh.model.getPhysicalGroupsForEntity(*entity).tolist()
+        for kind, _, nodes in zip(*gmsh.model.mesh.getElements(*entity)):
+            blocks.append(_block(gmsh, int(kind), nodes, tags, groups))
+    if sum(len(block.corners) for block in blocks) != count:
+        raise ValueError("$Elements: does not hold as many elements as its counts say")
     return points, blocks
 
 
 def _load(gmsh, content):
-    """Let gmsh read a file's content."""
+    """Let gmsh read a file's content; returns how many elements it says there are."""
     file = os.memfd_create("mesh")
     with os.fdopen(os.dup(file), "wb") as stream:
         stream.write(content)
@@ -183,100 +159,36 @@ def _load(gmsh, content):
     except Exception as error:  # gmsh raises Exception itself
         raised = str(error)
     lines = gmsh.logger.get()
+    begun = [found.groups() for line in lines if (found := BEGINS.search(line))]
     told = [line for line in lines if line.startswith("Error") or "duplicate" in line]
     if raised is None and not told:
-        return
+        return int(begun[-1][0]) if begun else 0
     if lost := re.search(r"node index (\d+)", raised or ""):
         raise ValueError(f"$Elements: names node {lost[1]}, which is not in $Nodes")
     # It says how many there are when it begins to read them.
-    begun = [found[1] for line in lines if (found := BEGINS.search(line))]
-    place = f"${begun[-1].capitalize()}: " if begun else ""
+    place = {"node": "$Nodes: ", "element": "$Elements: "}.get(begun[-1][1], "") if begun else ""
     reason = raised if raised is not None else told[0].partition(": ")[2]
     plain = not reason or "/proc/" in reason
     raise ValueError(f"{place}gmsh cannot read it: {'it is damaged' if plain else reason}")
 
 
-def _kind_of(gmsh, number):
-    """The _Kind that a number stands for."""
-    try:
-        about = gmsh.model.mesh.getElementProperties(number)
-    except Exception:
-        raise ValueError(f"$Elements: has elements of kind {number}, which is unknown") from None
-    name, dimension, order, nodes, _, corners = about
+def _block(gmsh, kind, nodes, tags, groups):
+    """The _Block of elements of a kind, whose nodes (n,) are among those of `tags` (N,)."""
+    name, dimension, order, size, _, corners = gmsh.model.mesh.getElementProperties(kind)
     if dimension == 3 or not dimension < corners <= 4:
         raise ValueError(
-            f"$Elements: has elements of kind {number} ({name}); a sheet has points, lines, "
+            f"$Elements: has elements of kind {kind} ({name}); a sheet has points, lines, "
             "triangles and quadrangles"
         )
-    return _Kind(dimension, order, nodes, corners)
-
-
-def _elements_of_version_4(gmsh, section, version, binary, kind_of):
-    """Blocks of elements as gmsh has read them: _Kind, nodes by tag (n, k), groups."""
-    found = []
-    for entity in gmsh.model.getEntities():
-        groups = gmsh.model.getPhysicalGroupsForEntity(*entity).tolist()
-        kinds, _, nodes = gmsh.model.mesh.getElements(*entity)
-        for kind, tags in zip(map(kind_of, kinds.tolist()), nodes):
-            found.append((kind, tags.astype(int).reshape(-1, kind.nodes), groups))
-    entries = sum(len(nodes) * (1 + kind.nodes) for kind, nodes, _ in found)
-    head, word = (4, 8) if version == 4.1 else (2, 4)  # numbers before all, bytes of a tag
-    if binary:
-        expected = 8 * head + 20 * int.from_bytes(section[:8], "little") + word * entries
-        there = len(section) - len("\r\n")
-    else:
-        words = section.split()
-        expected, there = head + 4 * int(words[0]) + entries, len(words)
-    if there > expected:
-        raise ValueError("$Elements: holds more than its counts say")
-    return found
-
-
-def _check_nodes_of_version_2(sections, binary):
-    """Refuse another number of nodes than the count, by which gmsh crashes."""
-    if "Nodes" not in sections:
-        return
-    first, _, rest = sections["Nodes"].partition(b"\n")
-    size, left = (28, rest) if binary else (4, rest.split())
-    if not (first.strip().isdigit() and int(first) == len(left) // size):
-        raise ValueError("$Nodes: does not hold as many numbers as its count says")
-
-
-def _elements_of_version_2(section, binary, kind_of):
-    """Blocks of elements as the file has them: _Kind, nodes by tag (n, k), groups."""
-    first, _, rest = section.partition(b"\n")
-    try:
-        left = int(first)
-        words = np.frombuffer(rest, "<i4", len(rest) // 4) if binary else map(int, rest.split())
-        numbers = np.array(list(words), dtype=int)
-    except (ValueError, OverflowError):
-        raise ValueError("$Elements: has something else where a whole number must be") from None
-    found, at = {}, 0
-    while left > 0 and at + 3 <= len(numbers):
-        # In binary elements of a kind share a head, and each begins with its own number.
-        one, two, marks = numbers[at : at + 3].tolist()
-        (number, size), own = ((one, two), 1) if binary else ((two, 1), 0)
-        kind = kind_of(number)
-        width = own + marks + kind.nodes
-        rows = numbers[at + 3 : at + 3 + size * width]
-        if not (0 <= marks <= 100 and 1 <= size <= left and len(rows) == size * width):
-            break
-        rows = rows.reshape(size, width)
-        groups = np.abs(rows[:, own]) if marks else np.zeros(size, dtype=int)
-        for group in np.unique(groups):
-            chosen = rows[groups == group, -kind.nodes :]
-            found.setdefault((kind, int(group)), []).append(chosen)
-        at, left = at + 3 + size * width, left - size
-    if left or at != len(numbers):
-        raise ValueError("$Elements: does not hold as many numbers as its counts say")
-    return [(kind, np.concatenate(rows), [group]) for (kind, group), rows in found.items()]
+    rows = np.searchsorted(tags, nodes.reshape(-1, size)[:, :corners])
+    return _Block(dimension, order, rows, groups)
 
 
 # ---------------------------------------------------------------------------------- the sheet
 
 
 def _sheet(points, blocks, names, version):
-    """The SheetMesh of points (N, 3) [m] and what `_read` gives."""
+    """The SheetMesh of points (N, 3) [m] and of blocks."""
     _check_repeats(points, blocks)
     groups, notes = _groups(blocks, names), []
     triangles = _triangles(points, blocks)
@@ -284,10 +196,10 @@ def _sheet(points, blocks, names, version):
     row = np.full(len(points), -1)
     row[used] = np.arange(len(used))
     creases, signs = _creases(points, triangles, groups)
-    order = max(kind.order for kind, *_ in blocks)
+    order = max(block.order for block in blocks)
     if order > 1:
         notes.append(f"the elements are of order {order}: their corners are taken")
-    if not names and any(max(tags, default=0) for *_, tags in blocks):
+    if not names and any(max(block.groups, default=0) for block in blocks):
         notes.append("the physical groups have no names: none is used")
     lost = [name for name, *_ in names if not any(name == other for other, _ in groups)]
     if lost:
@@ -322,13 +234,13 @@ def _where(corners):
 
 def _check_repeats(points, blocks):
     """Refuse an element with a node twice, and one that a group has twice: another may be lost."""
-    for kind, rows, _ in blocks:
+    for dimension, _, rows, _ in blocks:
         ordered = np.sort(rows, axis=1)
         same = np.any(np.diff(ordered, axis=1) == 0, axis=1)
         if np.any(same):
             raise ValueError(f"$Elements: one {_where(points[rows[same][0]])} has a node twice")
         _, first = np.unique(ordered, axis=0, return_index=True)
-        if kind.dimension and len(first) < len(rows):
+        if dimension and len(first) < len(rows):
             again = rows[np.setdiff1d(np.arange(len(rows)), first)[0]]
             raise ValueError(f"$Elements: one {_where(points[again])} is there twice")
 
@@ -336,11 +248,11 @@ def _check_repeats(points, blocks):
 def _groups(blocks, names):
     """Nodes of the elements of each named group, row by row, (n, k) by (name, dimension)."""
     name_of, found = {(dim, tag): name for name, dim, tag in names}, {}
-    for kind, rows, tags in blocks:
+    for dimension, _, rows, tags in blocks:
         for tag in tags:
-            name = name_of.get((kind.dimension, abs(tag)))
+            name = name_of.get((dimension, abs(tag)))
             if name is not None:
-                found.setdefault((name, kind.dimension), []).append(rows.ravel())
+                found.setdefault((name, dimension), []).append(rows.ravel())
     return {about: np.concatenate(rows) for about, rows in found.items()}
 
 
@@ -373,9 +285,9 @@ def _creases(points, triangles, groups):
 def _triangles(points, blocks):
     """Triangles (T, 3), each once: what is in several groups may be written several times."""
     found = []
-    for kind, rows, _ in blocks:
-        if kind.dimension == 2:
-            found.append(rows if kind.corners == 3 else cut_quadrangles(points, rows))
+    for dimension, _, rows, _ in blocks:
+        if dimension == 2:
+            found.append(rows if rows.shape[1] == 3 else cut_quadrangles(points, rows))
     if not found:
         raise ValueError(
             "$Elements: has no triangles; gmsh writes none of surfaces that are in no physical "
