@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Every public function and method of the package says of what types its arguments and result are.
 
-mypy checks that they are right: `scripts/run.sh format --check`. Rooms that still lack hints stand
-in pyproject.toml, where mypy is told to leave them out.
+mypy checks that they are right: `scripts/run.sh format --check`.
 """
 
 import ast
 import re
-import tomllib
 import unittest
 
 from support import ROOT
@@ -15,13 +13,6 @@ from support import ROOT
 QUICK = True
 
 SCRIPTS = ROOT / "scripts"
-MYPY = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["mypy"]
-LATER = tuple(
-    room.removesuffix(".*")
-    for rule in MYPY["overrides"]
-    if rule.get("follow_imports") == "skip"
-    for room in rule["module"]
-)
 
 
 def public(body):
@@ -48,28 +39,12 @@ def unhinted(source):
             yield f"{within.name}.{function.name}" if within else function.name
 
 
-def room(path):
-    """The one of LATER that a file is of, or None."""
-    name = ".".join(path.relative_to(SCRIPTS).with_suffix("").parts)
-    return next((one for one in LATER if f"{name}.".startswith(f"{one}.")), None)
-
-
 class TestHints(unittest.TestCase):
     def test_every_public_function_has_them(self):
-        files, rooms = sorted((SCRIPTS / "membrane").rglob("*.py")), set()
+        files = sorted((SCRIPTS / "membrane").rglob("*.py"))
         self.assertGreater(len(files), 100)
         for path in files:
-            lacking = list(unhinted(path.read_text(encoding="utf-8")))
-            if room(path):
-                rooms |= {room(path)} if lacking else set()
-            else:
-                self.assertEqual(lacking, [], path)
-        self.assertEqual(rooms, set(LATER), "rooms that lack none leave the list in pyproject.toml")
-
-    def test_mypy_leaves_out_the_same_rooms(self):
-        for path in (SCRIPTS / "membrane").rglob("*.py"):
-            left_out = any(re.search(one, path.as_posix()) for one in MYPY.get("exclude", ()))
-            self.assertEqual(left_out, room(path) is not None, path)
+            self.assertEqual(list(unhinted(path.read_text(encoding="utf-8"))), [], path)
 
     def test_what_is_missing_is_found(self):
         for line in (

@@ -5,6 +5,8 @@ Works for any mesh. Nodes are rows of an (N, 3) array in metres; triangles are (
 counter-clockwise seen from the top side; sides and creases are (E, 2) node ids.
 """
 
+from typing import Any
+
 import numpy as np
 
 MOUNTAIN = 1
@@ -15,7 +17,7 @@ MOST_CELLS = 100  # along each axis of the grid in which near pairs are sought
 MOST_PAIRS = 500_000  # that are looked at together, for the sake of memory
 
 
-def unique_sides(triangles):
+def unique_sides(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Sides of a triangulation, each once.
 
     Parameters
@@ -40,7 +42,7 @@ def unique_sides(triangles):
     return np.column_stack(np.divmod(keys, size)), side_of.reshape(-1, 3), shares
 
 
-def side_rows(sides, pairs):
+def side_rows(sides: np.ndarray, pairs: np.ndarray) -> np.ndarray:
     """Rows (n,) of `sides` (E, 2), the smaller node first, that join `pairs` (n, 2) of nodes.
 
     Raises
@@ -59,12 +61,12 @@ def side_rows(sides, pairs):
     return rows
 
 
-def side_lengths(nodes, sides):
+def side_lengths(nodes: np.ndarray, sides: np.ndarray) -> np.ndarray:
     """Lengths (E,) [m] of `sides` (E, 2) between `nodes` (N, 3) [m]."""
     return np.linalg.norm(nodes[sides[:, 1]] - nodes[sides[:, 0]], axis=1)
 
 
-def area_vectors(nodes, triangles):
+def area_vectors(nodes: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Area [m2] times upper unit normal of `triangles` (T, 3) of `nodes` (N, 3) [m]: (T, 3).
 
     Seen from above the corners run counter-clockwise. Zero where a triangle has no area.
@@ -73,12 +75,12 @@ def area_vectors(nodes, triangles):
     return 0.5 * np.cross(b - a, c - a)
 
 
-def triangle_areas(nodes, triangles):
+def triangle_areas(nodes: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Areas (T,) [m2] of `triangles` (T, 3) of `nodes` (N, 3) [m], never negative."""
     return np.linalg.norm(area_vectors(nodes, triangles), axis=1)
 
 
-def triangle_angles(nodes, triangles):
+def triangle_angles(nodes: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Inner angles (T, 3) [rad] at the corners of `triangles` (T, 3) of `nodes` (N, 3) [m].
 
     0 or pi at corners of a triangle without area.
@@ -90,7 +92,7 @@ def triangle_angles(nodes, triangles):
     return np.arctan2(sine, np.einsum("tij,tij->ti", ahead, behind))
 
 
-def cut_quadrangles(nodes, quadrangles):
+def cut_quadrangles(nodes: np.ndarray, quadrangles: np.ndarray) -> np.ndarray:
     """Each quadrangle cut in two along the diagonal that leaves the smaller largest angle.
 
     Flat triangles would get a negative stiffness. Where both are as good, from the first corner.
@@ -128,7 +130,7 @@ def cut_quadrangles(nodes, quadrangles):
     return ways[best, np.arange(len(best))].reshape(-1, 3)
 
 
-def crease_corners(triangles, creases):
+def crease_corners(triangles: np.ndarray, creases: np.ndarray) -> Any:
     """The two triangles at each crease.
 
     Parameters
@@ -171,7 +173,9 @@ def crease_corners(triangles, creases):
     return np.column_stack([a, b, apex(a, b), apex(b, a)])
 
 
-def crease_angles(nodes, triangles, creases, signs):
+def crease_angles(
+    nodes: np.ndarray, triangles: np.ndarray, creases: np.ndarray, signs: np.ndarray
+) -> np.ndarray:
     """Angle between the two triangles at each crease, on the inside of the fold.
 
     Parameters
@@ -212,12 +216,12 @@ def crease_angles(nodes, triangles, creases, signs):
     return np.where(angles <= -np.pi / 2, angles + 2 * np.pi, angles)
 
 
-def nearness(points):
+def nearness(points: np.ndarray) -> float:
     """Below which distance [m] `points` (N, 3) of a sheet count as one: NEAR of its width."""
     return NEAR * np.sort(np.ptp(points, axis=0))[1]
 
 
-def twins(points, near):
+def twins(points: np.ndarray, near: float) -> np.ndarray:
     """Pairs (n, 2) of rows of `points` (N, 3) no farther than `near` apart [m], in order."""
     # Sorted along a direction in which few points of a grid lie side by side.
     order = np.argsort(points @ (0.534, 0.633, 0.561))
@@ -234,7 +238,7 @@ def twins(points, near):
     return pairs[np.lexsort(pairs.T[::-1])]
 
 
-def pieces(count, sides):
+def pieces(count: int, sides: np.ndarray) -> np.ndarray:
     """Number (N,) of the piece that each of `count` nodes belongs to, joined by `sides` (E, 2)."""
     root = np.arange(count)
     while len(sides):
@@ -246,7 +250,7 @@ def pieces(count, sides):
     return np.unique(root, return_inverse=True)[1]
 
 
-def crossings(nodes, sides, triangles):
+def crossings(nodes: np.ndarray, sides: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Pairs of a side and a triangle that cut each other.
 
     A pair with a common node is never counted, nor is one that only touches in its plane.

@@ -351,7 +351,7 @@ def _fields_of(kind):
 class SceneParts(Engines, Hub, Air, Creases, Film):
     """What add_membrane and set_engines need, with the values of the paper's Tables."""
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check(self)
 
 
@@ -389,13 +389,13 @@ class RunParameters(Run, SceneParts):
 
     sail: ClassVar[str]
 
-    def __init_subclass__(cls, sail=None):
+    def __init_subclass__(cls, sail: str | None = None) -> None:
         super().__init_subclass__()
         if sail:
             cls.sail = sail
             KINDS[sail] = cls
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         super().__post_init__()
         if self.dt:
             check_steps(self.duration, self.dt)
@@ -430,7 +430,7 @@ def check_steps(duration: float, dt: float) -> None:
         )
 
 
-def _check(item, value):
+def _check(item: Field, value: Any) -> None:
     """Raise ValueError naming parameter, value and range if it is out of range."""
     about = item.metadata
     if item.type is bool:
@@ -447,7 +447,8 @@ def _check(item, value):
         if not isinstance(value, str) or "\0" in value:
             raise ValueError(f"{item.name} = {shown(value)} must be a text")
         return
-    if isinstance(value, bool) or not isinstance(value, Real):
+    is_number = isinstance(value, Real) and not isinstance(value, bool)
+    if not is_number:
         raise ValueError(f"{item.name} = {shown(value)} must be a number")
     try:
         float(value)

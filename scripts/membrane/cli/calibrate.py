@@ -13,9 +13,11 @@ calibration.json, calibration.png and runs.csv.
 
 import argparse
 import sys
+from collections.abc import Callable
 from dataclasses import fields
 from itertools import count
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -79,12 +81,12 @@ def _parser(asking, kind, usual):
     )
     parser.add_argument("target", type=file, metavar="TARGET", help="table with the curve")
     text = "curve to follow; may be given again (default: those drawn that the table has)"
-    known = {"choices": list(columns_of(kind.sail)), "metavar": "MEASURE"}
+    known: dict = {"choices": list(columns_of(kind.sail)), "metavar": "MEASURE"}
     parser.add_argument("--column", action="append", **known, help=text)
     for name, bounds in BOUNDS.items() if usual else ():
         text = f"bounds of {name}, > 0; twice the same holds it (default {bounds[0]:g} "
         text += f"{bounds[1]:g})"
-        form = {"nargs": 2, "metavar": ("LO", "HI"), "default": bounds}
+        form: dict = {"nargs": 2, "metavar": ("LO", "HI"), "default": bounds}
         parser.add_argument(f"--{name.replace('_', '-')}", **form, help=text)
     text = f"end of the part of the curve that counts [s]; from about {CHAOS:g} s on tiny "
     text += "differences grow, and single curves say little (default 0.1)"
@@ -114,7 +116,9 @@ def _check_bounds(parser, kind, bounds):
         parser.error("all parameters are held: nothing to find")
 
 
-def warnings(found, names: list[str], low, high, until: float) -> list[str]:
+def warnings(
+    found: Any, names: list[str], low: np.ndarray, high: np.ndarray, until: float
+) -> list[str]:
     """Sentences about what the numbers do not tell."""
     said = []
     for name, sigma, at in zip(names, found.sigma, at_bound(found.point, low, high)):
@@ -138,7 +142,9 @@ def warnings(found, names: list[str], low, high, until: float) -> list[str]:
     return said
 
 
-def result(found, bounds: dict, target, fit, surface, units: dict[str, str]) -> dict:
+def result(
+    found: Any, bounds: dict, target: Any, fit: Any, surface: Any, units: dict[str, str]
+) -> dict:
     """What calibration.json tells of an Estimate of the parameters with these `bounds`."""
     values = np.exp(found.point)
     parameters = {
@@ -166,7 +172,7 @@ def result(found, bounds: dict, target, fit, surface, units: dict[str, str]) -> 
     }
 
 
-def write_runs(path: Path, simulate: Deployments, names: list[str], target) -> None:
+def write_runs(path: Path, simulate: Deployments, names: list[str], target: Any) -> None:
     """Table of all runs: parameters and misfit."""
     pairs = zip(simulate.points, simulate.curves)
     rows = [[*np.exp(point), misfit(curves, target)] for point, curves in pairs]
@@ -175,7 +181,7 @@ def write_runs(path: Path, simulate: Deployments, names: list[str], target) -> N
     np.savetxt(path, rows, header=header, **form)
 
 
-def teller(names: list[str], target):
+def teller(names: list[str], target: Any) -> Callable:
     """A function that tells of each run."""
     say_when, number = announcer("calibrate"), count(1)
 

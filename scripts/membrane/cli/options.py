@@ -161,7 +161,8 @@ def _truth(word):
 
 def _add_argument(group, item, several):
     """Add the option for one parameter, a Field, to an argparse group."""
-    about, form = item.metadata, {"nargs": "+"} if several else {}
+    about = item.metadata
+    form: dict[str, Any] = {"nargs": "+"} if several else {}
     if item.name == "file" and not item.default:
         group.add_argument("file", type=_named, help=about["text"], **form)
         return

@@ -40,7 +40,7 @@ def command_line(words: list[str]) -> tuple[argparse.Namespace, type[RunParamete
     asking = argparse.ArgumentParser(prog="sweep", add_help=False, allow_abbrev=False)
     asking.add_argument("--config", type=file)
     path = asking.parse_known_args(rest)[0].config
-    configured = []
+    configured: list = []
     if path:
         from ..study.sweep.config import config_words  # needs a package of its own
 

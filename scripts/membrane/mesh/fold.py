@@ -14,6 +14,7 @@ across the turn become chords: there the film buckles, and is hardly stretched a
 
 from dataclasses import dataclass
 from math import atan2, cos, hypot, pi, sin, sqrt, tan
+from typing import Any
 
 import numpy as np
 
@@ -23,7 +24,9 @@ from .square_sail import quarter_turn
 SHORTENED = 1e-3
 
 
-def fold(mesh, bar_radius=0.030, arm_radius=0.040, layer_gap=1e-4):
+def fold(
+    mesh: Any, bar_radius: float = 0.030, arm_radius: float = 0.040, layer_gap: float = 1e-4
+) -> np.ndarray:
     """Positions of all nodes in the folded state.
 
     Parameters
@@ -311,7 +314,7 @@ class FoldReport:
     height: float
 
 
-def fold_report(mesh, positions):
+def fold_report(mesh: Any, positions: np.ndarray) -> Any:
     """Measure a folded state.
 
     Parameters

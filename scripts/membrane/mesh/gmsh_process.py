@@ -6,7 +6,9 @@ import resource
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 MEMORY = 8 * 2**30  # bytes that it may ask for
 
@@ -15,7 +17,7 @@ class GmshError(ValueError):
     """What gmsh says of its trouble, or that it crashes."""
 
 
-def in_gmsh(work, *arguments):
+def in_gmsh(work: Callable, *arguments: Any) -> Any:
     """What `work(gmsh, *arguments)` gives, in a process that ends with it.
 
     Parameters

@@ -13,7 +13,14 @@ from .fold_format import FoldFile, FoldFrame
 from .patterns import CreasePattern, face_pairs, fold_angles_of
 
 
-def miura(columns=6, rows=6, along=0.075, across=0.0776, angle=75.0, fold=85.0):
+def miura(
+    columns: int = 6,
+    rows: int = 6,
+    along: float = 0.075,
+    across: float = 0.0776,
+    angle: float = 75.0,
+    fold: float = 85.0,
+) -> FoldFile:
     """FOLD frames of a Miura-ori sheet: the crease pattern and one folded form.
 
     Parameters
@@ -66,7 +73,9 @@ def miura(columns=6, rows=6, along=0.075, across=0.0776, angle=75.0, fold=85.0):
     )
 
 
-def vertices(columns, rows, along, across, angle, fold):
+def vertices(
+    columns: int, rows: int, along: float, across: float, angle: float, fold: float
+) -> np.ndarray:
     """Vertices ((columns + 1) (rows + 1), 3) [m], row by row, centred at the origin.
 
     Parameters as in `miura`; `fold` = 0 is the flat sheet.

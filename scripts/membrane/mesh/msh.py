@@ -207,7 +207,7 @@ def _sheet(points, blocks, names, version):
         notes.append(f"no elements are in the groups {', '.join(lost)}{saved}")
     points, triangles = _right_way_up(points[used], row[triangles], notes)
     _check_surface(points, triangles, notes)
-    nodes = {}
+    nodes: dict = {}
     for (name, _), rows in groups.items():
         nodes.setdefault(name, []).append(row[np.unique(rows)])
     return SheetMesh(
@@ -247,7 +247,8 @@ def _check_repeats(points, blocks):
 
 def _groups(blocks, names):
     """Nodes of the elements of each named group, row by row, (n, k) by (name, dimension)."""
-    name_of, found = {(dim, tag): name for name, dim, tag in names}, {}
+    name_of = {(dim, tag): name for name, dim, tag in names}
+    found: dict = {}
     for dimension, _, rows, tags in blocks:
         for tag in tags:
             name = name_of.get((dimension, abs(tag)))
@@ -262,7 +263,7 @@ def _is_crease(name, dimension):
 
 def _creases(points, triangles, groups):
     """Sides on creases (C, 2), each once, and their signs (C,)."""
-    found = {}
+    found: dict = {}
     for (name, dimension), rows in groups.items():
         if _is_crease(name, dimension):
             sign = CREASES[name.lower()]
@@ -270,7 +271,7 @@ def _creases(points, triangles, groups):
                 if found.setdefault(tuple(pair), sign) != sign:
                     place = _where(points[pair])
                     raise ValueError(f"$Elements: the line {place} is both mountain and valley")
-    creases = np.array(list(found), dtype=int).reshape(-1, 2)
+    creases = np.array([*found], dtype=np.int64).reshape(-1, 2)
     sides, _, shares = unique_sides(triangles)
     inner = set(map(tuple, sides[shares > 1].tolist()))
     for pair in map(tuple, creases.tolist()):
@@ -279,7 +280,7 @@ def _creases(points, triangles, groups):
                 f"$Elements: the line {_where(points[list(pair)])}, mountain or valley, is no side "
                 "between two triangles"
             )
-    return creases, np.array(list(found.values()), dtype=int)
+    return creases, np.array([*found.values()], dtype=np.int64)
 
 
 def _triangles(points, blocks):

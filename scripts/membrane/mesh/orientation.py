@@ -2,13 +2,14 @@
 """Which way up a sheet lies: the plane of its points, and faces that run the same way round."""
 
 from collections import defaultdict, deque
+from typing import Any
 
 import numpy as np
 
 FLAT = 1e-6  # of the extent: what points may be off their plane
 
 
-def plane_normal(points):
+def plane_normal(points: np.ndarray) -> np.ndarray | None:
     """Unit normal (3,) of the plane in which `points` (n, 3) lie, or None if there is none.
 
     Its largest component is positive; it is (0, 0, 1) to the last digit where that will do.
@@ -22,7 +23,7 @@ def plane_normal(points):
     return normal if np.ptp(away @ normal) <= FLAT * size else None
 
 
-def laid_down(points, normal):
+def laid_down(points: np.ndarray, normal: np.ndarray) -> np.ndarray:
     """`points` (n, 3) of a plane, turned so that its unit `normal` becomes +z, at z = 0.
 
     By the least turn; the sheet is turned over about x where it is from -z.
@@ -35,7 +36,7 @@ def laid_down(points, normal):
     return turned * [1, 1, 0] + 0.0  # never -0
 
 
-def faces_to_turn(faces):
+def faces_to_turn(faces: Any) -> np.ndarray:
     """Which faces (F,) bool run the other way round than most of those they hang together with.
 
     Parameters
@@ -59,7 +60,7 @@ def faces_to_turn(faces):
             (one, ahead), (other, back) = pair
             beside[one].append((other, ahead == back))
             beside[other].append((one, ahead == back))
-    turned = [None] * len(faces)
+    turned: list = [None] * len(faces)
     for first in range(len(faces)):
         if turned[first] is not None:
             continue

@@ -3,6 +3,7 @@
 
 from collections import defaultdict
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -49,23 +50,23 @@ class SheetMesh:
     triangles: np.ndarray
     creases: np.ndarray
     crease_signs: np.ndarray
-    start: np.ndarray = None
+    start: np.ndarray | None = None
     groups: dict = field(default_factory=dict)
     others: tuple = ()
     notes: tuple = ()
 
     @property
-    def area(self):
+    def area(self) -> float:
         """Area at rest [m2]."""
         return float(triangle_areas(self.nodes, self.triangles).sum())
 
     @property
-    def rim(self):
+    def rim(self) -> np.ndarray:
         """Nodes on the edge of the sheet, also along cuts, (n,)."""
         sides, _, shares = unique_sides(self.triangles)
         return np.unique(sides[shares == 1])
 
-    def lines(self):
+    def lines(self) -> tuple[np.ndarray, np.ndarray]:
         """All sides (E, 2) and the FOLD letter of each (E,): B, M, V, or J inside the film."""
         sides, _, shares = unique_sides(self.triangles)
         letters = np.where(shares == 1, "B", "J")
@@ -73,7 +74,7 @@ class SheetMesh:
         return sides, letters
 
 
-def mesh_pattern(pattern, size=None):
+def mesh_pattern(pattern: Any, size: float | None = None) -> SheetMesh:
     """Triangulate a crease pattern.
 
     Mountains and valleys become creases. Edges of other letters are sides of the mesh without
@@ -123,7 +124,7 @@ def mesh_pattern(pattern, size=None):
     )
 
 
-def default_size(area):
+def default_size(area: float) -> float:
     """Length of the sides [m] with which a sheet has about `DEFAULT_TRIANGLES` triangles."""
     return float(np.sqrt(4 / np.sqrt(3) * area / DEFAULT_TRIANGLES))
 
@@ -211,9 +212,9 @@ def _describe(gmsh, pattern, size):
         geo.addLine(a + 1, b + 1, e + 1)
         length = np.linalg.norm(pattern.vertices[b] - pattern.vertices[a])
         geo.mesh.setTransfiniteCurve(e + 1, max(1, round(length / size)) + 1)
-    embedded = {}
+    embedded: dict = {}
     for face in range(len(pattern.faces)):
-        sides = [tuple(side) for side in pattern.face_sides(face).tolist()]
+        sides: list = [tuple(side) for side in pattern.face_sides(face).tolist()]
         both = {side for side in sides if side[::-1] in sides}
         loops = _simple_loops(pattern, [side for side in sides if side not in both])
         wires = [geo.addCurveLoop([number[side] for side in loop]) for loop in loops]
@@ -260,7 +261,8 @@ def _area(pattern, loop):
 def _collect(gmsh, pattern):
     """Nodes and triangles from gmsh, numbered from 0, vertices of the pattern first."""
     mesh = gmsh.model.mesh
-    index, nodes = {}, []
+    index: dict = {}
+    nodes: list = []
 
     def take(dimension, tag):
         tags, places, _ = mesh.getNodes(dimension, tag)
@@ -325,7 +327,7 @@ def _split(raw, flat, apexes, shortest):
     on_edge, in_face = dict(raw.on_edge), dict(raw.in_face)
     edge_of = {frozenset(side): e for e in on_edge for side in zip(on_edge[e][:-1], on_edge[e][1:])}
     owner = {(t[i - 1], t[i]): k for k, t in enumerate(triangles) for i in range(3)}
-    split = set()
+    split: set = set()
     for k, apex in zip(flat.tolist(), apexes.tolist()):
         c, a, b = np.roll(triangles[k], -apex).tolist()
         both = [k] if owner.get((b, a)) is None else [k, owner[b, a]]
@@ -385,7 +387,9 @@ def _carried_over(pattern, raw):
     return places
 
 
-def mean_value_coordinates(points, vertices, sides):
+def mean_value_coordinates(
+    points: np.ndarray, vertices: np.ndarray, sides: np.ndarray
+) -> np.ndarray:
     """Weights (n, V) with which vertices of a polygon give its inner points, summing to 1.
 
     Parameters
@@ -411,7 +415,7 @@ def mean_value_coordinates(points, vertices, sides):
 # ------------------------------------------------------------------------------------------ cuts
 
 
-def split_along(triangles, cuts):
+def split_along(triangles: np.ndarray, cuts: Any) -> Any:
     """Open a mesh along sides: nodes are doubled where the cut lets their triangles part.
 
     A cut's end inside the film stays one node.
@@ -470,10 +474,10 @@ def _fans(triangles, around, node, cut):
 
 def _renamed(before, after, sides):
     """`sides` (C, 2) of a mesh, by the nodes they have since the mesh was split."""
-    named = {}
+    named: dict = {}
     for old, new in zip(before.tolist(), after.tolist()):
         for i in range(3):
             named[old[i - 1], old[i]] = new[i - 1], new[i]
             named.setdefault((old[i], old[i - 1]), (new[i], new[i - 1]))
-    pairs = [named[tuple(side)] for side in sides.tolist()]
+    pairs = [named[side[0], side[1]] for side in sides.tolist()]
     return np.array(pairs, dtype=int).reshape(-1, 2)

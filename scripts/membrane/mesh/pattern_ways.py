@@ -6,6 +6,7 @@ changes more than the way of writing is told in the pattern's notes.
 """
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from ..geometry import nearness, twins
 from .orientation import faces_to_turn, laid_down, plane_normal
 
 
-def without_twins(pattern):
+def without_twins(pattern: Any) -> Any:
     """The pattern with vertices taken as one that lie on one another, and a note about them.
 
     Where the file gives faces they say what hangs together: twins stay two, as beside a slit.
@@ -43,9 +44,10 @@ def _of_edges(pattern, kept):
     return replace(pattern, edges=pattern.edges[kept], letters=pattern.letters[kept], angles=angles)
 
 
-def without_repeats(pattern):
+def without_repeats(pattern: Any) -> Any:
     """The pattern with each edge once; refused if its letters or angles differ."""
-    number, kept = {}, []
+    number: dict = {}
+    kept: list = []
     for e, ends in enumerate(map(frozenset, pattern.edges.tolist())):
         first = number.setdefault(ends, e)
         if first == e:
@@ -63,7 +65,7 @@ def without_repeats(pattern):
     return pattern if len(kept) == len(pattern.edges) else _of_edges(pattern, kept)
 
 
-def one_way_round(pattern):
+def one_way_round(pattern: Any) -> Any:
     """The pattern with all its faces run the same way round, and a note if they did not."""
     turned = faces_to_turn(pattern.faces)
     if not np.any(turned):
@@ -77,23 +79,23 @@ def one_way_round(pattern):
     )
 
 
-def seen_from_above(pattern):
+def seen_from_above(pattern: Any) -> Any:
     """Vertices (V, 3) [m] of a flat pattern, turned into z = 0 with its upper side up.
 
     That is the side from which the faces run counter-clockwise: it is what mountain and valley
     are seen from. Without faces a pattern in z = const is seen from +z.
     """
-    normal = plane_normal(pattern.vertices)
+    normal: Any = plane_normal(pattern.vertices)
     if sum(area_vector(pattern.vertices[face]) @ normal for face in pattern.faces) < 0:
         normal = -normal
     return laid_down(pattern.vertices, normal)
 
 
-def area_vector(loop):
+def area_vector(loop: np.ndarray) -> np.ndarray:
     """Area [m2] times normal (3,) of a polygon (n, 3), as flat as may be (Newell's method)."""
     return 0.5 * np.cross(loop, np.roll(loop, -1, axis=0)).sum(axis=0)
 
 
-def plain(angle):
+def plain(angle: Any) -> Any:
     """An angle [deg] for a message, never -0."""
     return f"{round(angle, 2) + 0.0:g}"

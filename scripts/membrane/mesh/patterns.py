@@ -9,6 +9,7 @@ A pattern in another plane, or seen from below, is turned as a whole.
 
 from collections import defaultdict, deque
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -54,35 +55,37 @@ class CreasePattern:
     vertices: np.ndarray
     edges: np.ndarray
     letters: np.ndarray
-    angles: np.ndarray
+    angles: np.ndarray | None
     faces: tuple
     holes: tuple
-    folded: np.ndarray = None
+    folded: np.ndarray | None = None
     notes: tuple = ()
 
     @property
-    def size(self):
+    def size(self) -> float:
         """Length of the diagonal of the pattern's bounding box [m]."""
         return float(np.linalg.norm(np.ptp(self.vertices, axis=0)))
 
     @property
-    def edge_lengths(self):
+    def edge_lengths(self) -> np.ndarray:
         """Lengths (E,) of the edges [m]."""
         return np.linalg.norm(np.diff(self.vertices[self.edges], axis=1)[:, 0], axis=1)
 
-    def face_sides(self, face):
+    def face_sides(self, face: Any) -> Any:
         """All sides of a face as pairs of vertices (n, 2), the face on the left of each."""
         loops = (self.faces[face], *self.holes[face])
         return np.concatenate([np.column_stack([loop, np.roll(loop, -1)]) for loop in loops])
 
     @property
-    def area(self):
+    def area(self) -> float:
         """Area of the sheet [m2]."""
         loops = [loop for pair in zip(self.faces, self.holes) for loop in (pair[0], *pair[1])]
         return float(sum(_loop_area(self.vertices, loop) for loop in loops))
 
 
-def crease_pattern(content, unit=None, start=None, unfolded=False):
+def crease_pattern(
+    content: Any, unit: float | None = None, start: int | None = None, unfolded: bool = False
+) -> CreasePattern:
     """The pattern that a FOLD file describes, with its folded start if the file has one.
 
     The flat sheet is the first frame that lies in the plane and is no folded form; if there is
@@ -141,7 +144,7 @@ def crease_pattern(content, unit=None, start=None, unfolded=False):
     pattern = replace(pattern, vertices=flattened(pattern))
     pattern = _with_faces(pattern)
     _check(pattern)
-    doubts = ()
+    doubts: tuple = ()
     if form is None and pattern.angles is not None and 0 < np.abs(pattern.angles).max() <= np.pi:
         doubts = ("no fold angle is larger than pi: are they in radians? FOLD has degrees",)
     try:
@@ -319,7 +322,7 @@ def _side_of(a, b, points):
     return turn / np.linalg.norm(along, axis=-1)
 
 
-def find_faces(vertices, edges, letters):
+def find_faces(vertices: np.ndarray, edges: np.ndarray, letters: Any) -> Any:
     """Faces of the planar graph of the edges, by walking round each with the face on the left.
 
     Whether a face is of film or a hole follows from the border edges: film lies inside an odd
@@ -397,7 +400,8 @@ def _walk(vertices, edges):
         turned = [ends[i] for i in np.argsort(np.arctan2(away[:, 1], away[:, 0]))]
         for i, a in enumerate(turned):
             following[a, b] = b, turned[i - 1]  # arriving from a: the next clockwise of it
-    loops, loop_of = [], {}
+    loops: list = []
+    loop_of: dict = {}
     for begin in following:
         if begin in loop_of:
             continue
@@ -460,7 +464,7 @@ def _loop_area(vertices, loop):
 # ------------------------------------------------------------------------------------ the checks
 
 
-def face_pairs(pattern):
+def face_pairs(pattern: Any) -> Any:
     """The faces on the left and on the right of each edge (E, 2), -1 for none.
 
     Raises
@@ -530,7 +534,7 @@ def _neighbours(pattern, pairs):
 # --------------------------------------------------------------------------- folding, unrolling
 
 
-def fold_by_angles(pattern):
+def fold_by_angles(pattern: Any) -> np.ndarray:
     """Vertices (V, 3) [m] of the pattern folded by its angles, every face kept rigid.
 
     The first face stays where it is; each other one hangs on a chain of creases.
@@ -570,7 +574,7 @@ def fold_by_angles(pattern):
     return places
 
 
-def fold_angles_of(pattern, places, pairs):
+def fold_angles_of(pattern: Any, places: np.ndarray, pairs: Any) -> Any:
     """Fold angles (E,) [deg] of the edges in a folded form, positive valley, 0 on the border.
 
     Parameters
@@ -749,7 +753,9 @@ def _strains(pattern, places, rest):
     return now / np.where(before > 0, before, np.inf) - 1
 
 
-def nearest_pose(places, target, weights=None):
+def nearest_pose(
+    places: np.ndarray, target: np.ndarray, weights: np.ndarray | None = None
+) -> np.ndarray:
     """`places` (n, 3), turned and shifted as a whole so as to come nearest to `target` (n, 3).
 
     Kabsch, Acta Cryst. A32 (1976) 922. `weights` (n,) default to equal ones.

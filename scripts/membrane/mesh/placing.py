@@ -2,6 +2,7 @@
 """A sheet on the spin axis: its centre of mass, tips and hub."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -45,7 +46,7 @@ class PatternSail:
     used: tuple = ()
 
 
-def place(sheet, p):
+def place(sheet: Any, p: Any) -> PatternSail:
     """Put a SheetMesh on the spin axis, choose its tips and its hub by PatternParameters `p`.
 
     Returns
@@ -96,7 +97,7 @@ def _tips(sheet, choice):
     return corners
 
 
-def outline_corners(points, among):
+def outline_corners(points: np.ndarray, among: np.ndarray) -> np.ndarray:
     """The nodes (n,) of `among` at corners of the convex outline of `points` (N, 2).
 
     Counter-clockwise; where the outline turns by less than 20 degrees there is no corner. Of nodes
@@ -106,9 +107,9 @@ def outline_corners(points, among):
     tiny = 1e-9 * np.ptp(points[among], axis=0).max() ** 2
 
     def half(ids):  # Andrew's monotone chain
-        chain = []
+        chain: list = []
         for i in ids:
-            while len(chain) > 1 and _turn(points, *chain[-2:], i)[0] <= tiny:
+            while len(chain) > 1 and _turn(points, chain[-2], chain[-1], i)[0] <= tiny:
                 chain.pop()
             if not chain or np.any(points[chain[-1]] != points[i]):
                 chain.append(i)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A sheet in words: what was read, what is doubtful about it, which sides set its time step."""
 
+from typing import Any
+
 import numpy as np
 
 from ..geometry import MOUNTAIN
@@ -10,7 +12,7 @@ FEW = 10  # sides, or pairs of nodes, that may be said to set the time step
 LONGER = 3.0  # times as long the step would be without them, at least
 
 
-def described(sheet, sail):
+def described(sheet: Any, sail: Any) -> str:
     """One line about what was read: size, triangles, creases, tips, hub, groups not used.
 
     Parameters
@@ -41,7 +43,7 @@ def _counted(number, thing):
     return f"{number} {thing}" + "s" * (number != 1)
 
 
-def doubts(sheet):
+def doubts(sheet: Any) -> list[str]:
     """Sentences about what is read by the letter, but probably not meant."""
     said = list(sheet.notes)
     if not len(sheet.creases):
@@ -55,7 +57,13 @@ def doubts(sheet):
     return said
 
 
-def slow_sides(nodes, sides, stiffnesses, masses, zeta=0.0):
+def slow_sides(
+    nodes: np.ndarray,
+    sides: np.ndarray,
+    stiffnesses: np.ndarray,
+    masses: np.ndarray,
+    zeta: float = 0.0,
+) -> tuple[np.ndarray, float]:
     """The few sides without which the time step could be much longer.
 
     The step that a side allows is estimated from its ends, each moved alone: exact for a side much
@@ -94,7 +102,8 @@ def slow_sides(nodes, sides, stiffnesses, masses, zeta=0.0):
     square = largest(stiffnesses)
     rate = largest(2 * zeta * np.sqrt(stiffnesses * masses[sides].mean(axis=1)))
     step = 2 / (rate + np.sqrt(rate**2 + square))  # at which square step^2 + 4 rate step = 4
-    rows, taken = [], np.zeros(len(nodes), dtype=bool)
+    rows: list = []
+    taken = np.zeros(len(nodes), dtype=bool)
     for row in np.argsort(step):
         if np.any(taken[sides[row]]):
             continue
@@ -108,7 +117,7 @@ def slow_sides(nodes, sides, stiffnesses, masses, zeta=0.0):
     return np.empty(0, dtype=int), 1.0
 
 
-def about_slow_sides(nodes, sides, *springs):
+def about_slow_sides(nodes: np.ndarray, sides: np.ndarray, *springs: Any) -> list[str]:
     """A sentence about the `slow_sides`, in a list; no sentence if there are none."""
     rows, longer = slow_sides(nodes, sides, *springs)
     if not len(rows):

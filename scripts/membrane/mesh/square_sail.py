@@ -10,6 +10,7 @@ neighbouring petals lies the diagonal seam, whose nodes both share.
 from dataclasses import dataclass
 from math import sqrt
 from numbers import Integral
+from typing import Any
 
 import numpy as np
 
@@ -87,35 +88,35 @@ class SailMesh:
     rows: tuple
 
     @property
-    def strips(self):
+    def strips(self) -> int:
         """Strips of a petal, `fold_lines` + 1 [-]."""
         return self.fold_lines + 1
 
     @property
-    def strip_width(self):
+    def strip_width(self) -> float:
         """Distance between neighbouring fold lines [m]."""
         return (self.outer_width - self.inner_width) / 2 / self.strips
 
     @property
-    def film_size(self):
+    def film_size(self) -> int:
         """Number F of nodes in the film; they have the ids 0 ... F - 1."""
         return len(self.nodes) - len(self.tether_nodes)
 
     @property
-    def tether_length(self):
+    def tether_length(self) -> float:
         """Flat length of a tether, spool to inner corner [m]."""
         return self.inner_width / sqrt(2) - self.spool_radius
 
-    def row_distance(self, row):
+    def row_distance(self, row: int) -> float:
         """Distance [m] of a row from the axis; also half the row's length."""
         return self.inner_width / 2 + self.strip_width * row / self.refine
 
-    def row_arc(self, row):
+    def row_arc(self, row: int) -> Any:
         """Arc length s [m] of the nodes of a row, (cells + 1,), 0 at the petal's middle."""
         cells = self.rows[row].shape[1] - 1
         return self.row_distance(row) * np.arange(-cells, cells + 1, 2) / cells
 
-    def lines(self):
+    def lines(self) -> Any:
         """All sides and cables: (E + 4 tether_segments, 2) node ids and their LINE_KINDS."""
         kinds = np.zeros(len(self.sides), dtype=int)
         for name, chosen in (("crease", self.creases), ("seam", self.seam_sides)):
@@ -125,13 +126,13 @@ class SailMesh:
 
 
 def sail_mesh(
-    outer_width=0.455,
-    inner_width=0.103,
-    fold_lines=7,
-    refine=1,
-    spool_radius=0.025,
-    tether_segments=4,
-):
+    outer_width: float = 0.455,
+    inner_width: float = 0.103,
+    fold_lines: int = 7,
+    refine: int = 1,
+    spool_radius: float = 0.025,
+    tether_segments: int = 4,
+) -> SailMesh:
     """Mesh of the flat sail with its tethers.
 
     A base cell is about as long as a strip is wide; from one fold line to the next a row gains
@@ -199,14 +200,14 @@ def sail_mesh(
     return mesh
 
 
-def mesh_of(p):
+def mesh_of(p: Any) -> SailMesh:
     """The SailMesh that the SailParameters `p` describe."""
     return sail_mesh(
         p.outer_width, p.inner_width, p.fold_lines, p.refine, p.spool_radius, p.tether_segments
     )
 
 
-def sheet_mesh(rows, columns, spacing):
+def sheet_mesh(rows: int, columns: int, spacing: float) -> tuple[np.ndarray, np.ndarray]:
     """Mesh of a flat rectangular sheet of squares, each cut in two along the same diagonal.
 
     Parameters
@@ -228,7 +229,8 @@ def sheet_mesh(rows, columns, spacing):
     ValueError
         Naming the parameter and its range, if one is out of range.
     """
-    for name, value in {"rows": rows, "columns": columns}.items():
+    counts: dict = {"rows": rows, "columns": columns}
+    for name, value in counts.items():
         if not isinstance(value, Integral) or value < 2:
             raise ValueError(f"{name} = {value}: must be a whole number >= 2")
     if not (np.isfinite(spacing) and spacing > 0):
@@ -240,7 +242,7 @@ def sheet_mesh(rows, columns, spacing):
     return nodes, np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
 
 
-def tip_masses(mesh, mass):
+def tip_masses(mesh: Any, mass: float) -> np.ndarray:
     """Masses (N,) [kg] of the nodes of a mesh: `mass` at each of its tips, 0 elsewhere."""
     masses = np.zeros(len(mesh.nodes))
     masses[mesh.tips] = mass
@@ -283,7 +285,7 @@ def _number_rows(cells):
 
 def _film_nodes(rows, inner, outer):
     """Flat positions (F, 3) [m] of the film's nodes; petals are exact quarter turns of petal 0."""
-    blocks = []
+    blocks: list = []
     for k, row in enumerate(rows):
         cells = row.shape[1] - 1
         distance = inner + (outer - inner) * k / (len(rows) - 1)
@@ -293,7 +295,7 @@ def _film_nodes(rows, inner, outer):
     return np.concatenate(blocks)
 
 
-def quarter_turn(points, turns):
+def quarter_turn(points: np.ndarray, turns: int) -> np.ndarray:
     """Points (..., 3) turned by `turns` right angles about +z, without rounding."""
     x, y, z = np.moveaxis(points, -1, 0)
     for _ in range(turns % 4):

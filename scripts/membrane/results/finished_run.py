@@ -3,6 +3,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -54,7 +55,7 @@ class FinishedRun:
     spool: tuple | None
     has_hub: bool
 
-    def turned(self, times):
+    def turned(self, times: Any) -> np.ndarray:
         """Angles (n,) [rad] since the start by which hub or sail have turned at `times` (n,) [s].
 
         Of a sail that flies free it is the integral of its mean spin rate.
@@ -70,7 +71,7 @@ class FinishedRun:
         return np.interp(times, rows, angles - angles[0])
 
 
-def read_run(folder):
+def read_run(folder: str | Path) -> FinishedRun:
     """The FinishedRun of an output folder of `deploy`, `case`, `sail`, `miura` or `ikaros`.
 
     Raises

@@ -3,13 +3,15 @@
 
 import csv
 import io
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..files import BadFile, is_value, read_text, shown
 
 
-def read_history(path):
+def read_history(path: str | Path) -> dict[str, np.ndarray]:
     """Columns of a .csv file as HistoryWriter makes them: dict of (S,) float by name.
 
     Raises
@@ -31,7 +33,9 @@ def read_history(path):
         raise BadFile(path, "", f"is no table: {error}") from None
 
 
-def columns_of(path, names, rows, wanted, first=1):
+def columns_of(
+    path: str | Path, names: Any, rows: Any, wanted: Any, first: Any = 1
+) -> dict[str, np.ndarray]:
     """Columns of a table that has been read: dict of (S,) float by name.
 
     Parameters

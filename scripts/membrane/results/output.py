@@ -9,6 +9,7 @@ import re
 from contextlib import contextmanager
 from hashlib import sha256
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 from xml.sax.saxutils import quoteattr
 
@@ -51,7 +52,7 @@ class VtkSeries:
         Times [s] of the frames to keep of an earlier series, which this one continues.
     """
 
-    def __init__(self, folder, name, cells, times=()):
+    def __init__(self, folder: str | Path, name: str, cells: np.ndarray, times: Any = ()) -> None:
         cells = np.asarray(cells)
         if cells.ndim != 2 or cells.shape[1] not in CELL_TYPES:
             raise ValueError(f"cells of shape {cells.shape}: must be (M, 2) or (M, 3)")
@@ -68,7 +69,7 @@ class VtkSeries:
         if kept:
             self._list_frames()
 
-    def write(self, time, positions, cell_data=None):
+    def write(self, time: float, positions: np.ndarray, cell_data: dict | None = None) -> None:
         """Append a frame.
 
         Parameters
@@ -107,7 +108,7 @@ class VtkSeries:
         self._list_last_frame()
         return path
 
-    def state(self):
+    def state(self) -> dict:
         """What it takes to go on with the series, ready for JSON; all frames are on the disk then.
 
         Gives the frames' `times` [s] and the checksum `sum` of their files.
@@ -119,7 +120,7 @@ class VtkSeries:
         flush(self.folder)
         return {"times": [time for time, _ in self.frames], "sum": self._sum.hexdigest()}
 
-    def positions(self, number):
+    def positions(self, number: int) -> np.ndarray:
         """Positions (N, 3) [m] of the nodes in a frame, double, read back from its file."""
         return read_frame(self.folder / self.frames[number][1])[0].copy()
 
@@ -147,7 +148,7 @@ def _frame_file(name, number):
     return f"{name}_{number:06d}.vtu"
 
 
-def is_whole_series(folder, name, state):
+def is_whole_series(folder: str | Path, name: str, state: dict) -> bool:
     """Whether all frames are there that the `state` of a VtkSeries tells of, as they were then."""
     checksum = sha256()
     try:
@@ -178,7 +179,7 @@ class HistoryWriter:
         What `state()` gave of an earlier table, which this one continues.
     """
 
-    def __init__(self, path, units, state=None):
+    def __init__(self, path: str | Path, units: dict[str, str], state: dict | None = None) -> None:
         self.path, self.columns = Path(path), tuple(units)
         self.path.parent.mkdir(parents=True, exist_ok=True)
         write_json(self.path.with_suffix(".units.json"), units)
@@ -191,7 +192,7 @@ class HistoryWriter:
         else:
             self._line(self.columns)
 
-    def state(self):
+    def state(self) -> dict:
         """What it takes to go on with the table, ready for JSON; all of it is on the disk then.
 
         Gives its `size` [bytes] and its checksum `sum`.
@@ -200,7 +201,7 @@ class HistoryWriter:
         flush(self.path.parent)
         return {"size": self._size, "sum": self._sum.hexdigest()}
 
-    def write(self, values):
+    def write(self, values: dict) -> None:
         """Append a line; `values` gives a finite number for every column by name.
 
         Raises
@@ -217,14 +218,14 @@ class HistoryWriter:
                 raise NotFinite(f"{name} = {value}: must be finite, in {self.path.name}")
         self._line(map(repr, row))
 
-    def close(self):
+    def close(self) -> None:
         """Close the file."""
         self._file.close()
 
-    def __enter__(self):
+    def __enter__(self) -> "HistoryWriter":
         return self
 
-    def __exit__(self, *error):
+    def __exit__(self, *error: Any) -> None:
         self.close()
 
     def _line(self, fields):
@@ -238,7 +239,7 @@ class HistoryWriter:
         self._sum.update(line)
 
 
-def is_whole_table(path, state):
+def is_whole_table(path: str | Path, state: dict) -> bool:
     """Whether a table holds what the `state` of a HistoryWriter tells of, as it was then."""
     try:
         return add_to_sum(sha256(), path, state["size"]).hexdigest() == state["sum"]
@@ -246,7 +247,7 @@ def is_whole_table(path, state):
         return False
 
 
-def list_series(path):
+def list_series(path: str | Path) -> list[tuple[float, Path]]:
     """Times [s] and .vtu files of a .pvd file of VtkSeries: list of (float, Path), not empty.
 
     Raises
@@ -259,7 +260,7 @@ def list_series(path):
         items = list(ElementTree.fromstring(read_text(path)).iter("DataSet"))
     except ElementTree.ParseError as error:
         raise BadFile(path, "", f"is no XML: {error}") from None
-    series = []
+    series: list = []
     for number, item in enumerate(items):
         time, name = item.get("timestep", ""), item.get("file", "")
         if not is_value(time) or not name or Path(name).name != name:
@@ -272,7 +273,7 @@ def list_series(path):
     return series
 
 
-def read_frame(path):
+def read_frame(path: str | Path) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Positions (N, 3) [m] and cell data, (M,) by name, of a .vtu file of VtkSeries."""
     grid = _read_grid(path)
     data = grid.GetCellData()
@@ -281,7 +282,7 @@ def read_frame(path):
     return vtk_to_numpy(grid.GetPoints().GetData()), fields
 
 
-def read_cells(path, corners):
+def read_cells(path: str | Path, corners: int) -> np.ndarray:
     """Node ids (M, `corners`) of the cells of a .vtu file of VtkSeries; BadFile if they differ."""
     grid = _read_grid(path)
     count, nodes = grid.GetNumberOfCells(), grid.GetNumberOfPoints()
@@ -316,7 +317,7 @@ def _silent():
         vtkObject.SetGlobalWarningDisplay(said)
 
 
-def cell_array(cells):
+def cell_array(cells: np.ndarray) -> Any:
     """Rows of node ids (M, n) as a vtkCellArray."""
     offsets = np.arange(0, cells.size + 1, cells.shape[1], dtype=np.int64)
     array = vtkCellArray()

@@ -50,7 +50,9 @@ def run_case(
             result = _deploy(p, part, checkpoints, pictures)
             settle(part)  # all that a result stands for
             write_json(part / RESULT, {**result, **about})
-    return finished(folder, about)
+    found = finished(folder, about)
+    assert found  # it is there now
+    return found
 
 
 def _deploy(p, part, checkpoints, pictures):

@@ -226,10 +226,10 @@ class Frames(Sequence):
     def __init__(self, series: VtkSeries) -> None:
         self._series = series
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self._series.frames)
 
-    def __getitem__(self, number):
+    def __getitem__(self, number: Any) -> Any:
         return self._series.positions(number)
 
 

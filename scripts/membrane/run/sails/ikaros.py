@@ -82,7 +82,7 @@ class Flight:
 class IkarosParameters(SailParameters, Flight, sail="ikaros"):
     """Parameters of the flight sail; with a spin of its own, omega follows from it."""
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.spin:
             object.__setattr__(self, "omega", self.spin / RPM.factor)
         super().__post_init__()

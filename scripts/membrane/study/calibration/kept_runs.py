@@ -3,6 +3,8 @@
 
 import json
 import os
+from pathlib import Path
+from typing import Any
 from threading import Lock
 
 import numpy as np
@@ -22,22 +24,22 @@ class KeptRuns:
         Of what JSON can hold: all that the curves depend on beside the point.
     """
 
-    def __init__(self, path, about):
+    def __init__(self, path: str | Path, about: Any) -> None:
         self.path, self.about, self._lock = path, about, Lock()
         self._curves = dict(_read(path, about))
         self._is_begun = False
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self._curves)
 
-    def __contains__(self, point):
+    def __contains__(self, point: Any) -> bool:
         return tuple(point) in self._curves
 
-    def __getitem__(self, point):
+    def __getitem__(self, point: Any) -> np.ndarray | None:
         """Curves (C, S) of a point (d,), None where the run diverged."""
         return self._curves[tuple(point)]
 
-    def add(self, point, curves):
+    def add(self, point: Any, curves: Any) -> None:
         """Keep a run; also from several threads at once."""
         with self._lock:
             if not self._is_begun:
@@ -53,7 +55,7 @@ class KeptRuns:
         self._is_begun = True
 
 
-def refuse_another(path):
+def refuse_another(path: str | Path) -> None:
     """Raise ValueError if there is something else than kept runs at a path: it would be lost."""
     if not os.path.lexists(path):
         return
@@ -62,7 +64,11 @@ def refuse_another(path):
             about = json.loads(file.readline())
     except (OSError, ValueError):
         about = None
-    if path.is_symlink() or not isinstance(about, dict) or not {"names", "times"} <= set(about):
+    if (
+        Path(path).is_symlink()
+        or not isinstance(about, dict)
+        or not {"names", "times"} <= set(about)
+    ):
         raise ValueError(
             f"{path} was not made by calibrate, and would be lost: move it away, or choose another "
             "folder"

@@ -2,6 +2,8 @@
 """Picture of a calibration: target and fit, what is left, and where the runs and the fit lie."""
 
 from dataclasses import fields
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -14,7 +16,16 @@ DPI = 120
 WIDEST = 3.0  # of a logarithm, that is shown of an uncertainty
 
 
-def draw(path, kind, target, fit, surface, found, names, runs):
+def draw(
+    path: str | Path,
+    kind: Any,
+    target: Any,
+    fit: Any,
+    surface: Any,
+    found: Any,
+    names: Any,
+    runs: Any,
+) -> None:
     """Draw it.
 
     Parameters

@@ -5,8 +5,10 @@ import os
 import subprocess
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from membrane._load import VERSION
@@ -36,14 +38,21 @@ class Deployments:
         Called with (values of the parameters (d,), curves or None) after each run.
     """
 
-    def __init__(self, deploy, names, target, options=(), tell=lambda values, curves: None):
+    def __init__(
+        self,
+        deploy: Any,
+        names: Any,
+        target: Any,
+        options: Any = (),
+        tell: Callable = lambda values, curves: None,
+    ) -> None:
         self.deploy, self.options, self.tell = deploy, list(options), tell
         self.names, self.target = names, target
-        self.kept = None
+        self.kept: KeptRuns | None = None
         self.workers = len(os.sched_getaffinity(0))
-        self._known = {}
+        self._known: dict = {}
 
-    def keep(self, path):
+    def keep(self, path: str | Path) -> int:
         """Keep the runs in a file, and take from it those of an earlier call; returns how many."""
         about = {
             "membrane": VERSION,
@@ -57,7 +66,7 @@ class Deployments:
         self.kept = KeptRuns(path, about)
         return len(self.kept)
 
-    def __call__(self, points):
+    def __call__(self, points: Any) -> list:
         """Curves of points (n, d), logarithms: a list of (C, S), None where the run diverged."""
         points = [tuple(float(v) for v in point) for point in points]
         new = [point for point in dict.fromkeys(points) if point not in self._known]
@@ -70,16 +79,16 @@ class Deployments:
         return [self._known[point] for point in points]
 
     @property
-    def points(self):
+    def points(self) -> np.ndarray:
         """Logarithms of the parameters of the runs that went well, (n, d)."""
         return np.array([p for p, curves in self._known.items() if curves is not None])
 
     @property
-    def curves(self):
+    def curves(self) -> np.ndarray:
         """Their curves, (n, C, S)."""
         return np.array([curves for curves in self._known.values() if curves is not None])
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self._known)
 
     def _run(self, point):
@@ -125,7 +134,7 @@ class Deployments:
 
     def _read(self, path):
         """Curves (C, S) of a history.csv at the target's times."""
-        table = np.genfromtxt(path, delimiter=",", names=True, encoding="utf-8")
+        table: Any = np.genfromtxt(path, delimiter=",", names=True, encoding="utf-8")
         rows = np.array([table[name] for name in self.target.columns])
         return CubicSpline(table["time"], rows, axis=1)(self.target.times)
 

@@ -7,6 +7,8 @@ are smooth functions of the parameters, so a spline through the curves of a few 
 whole valley, and the global search costs no run.
 """
 
+from typing import Any
+
 import numpy as np
 from scipy.interpolate import RBFInterpolator
 from scipy.optimize import differential_evolution
@@ -19,20 +21,22 @@ TOLERANCE = 0.005  # of the target's range: what emulator and scatter may be off
 SMOOTHING = 1e-3  # of the spline, beside curves of the order of the target's range
 
 
-def weights(target):
+def weights(target: Any) -> np.ndarray:
     """What differences from the target are divided by, (C, 1): noise and TOLERANCE."""
     span = np.ptp(target.values, axis=1)
     return np.hypot(target.noise, TOLERANCE * span)[:, None]
 
 
-def misfit(curves, target):
+def misfit(curves: Any, target: Any) -> float:
     """Root mean square of curves - target (C, S) over `weights`; infinite for None."""
     if curves is None:
         return np.inf
     return float(np.sqrt(np.mean(((curves - target.values) / weights(target)) ** 2)))
 
 
-def emulated_best(points, curves, target, low, high, seed=0):
+def emulated_best(
+    points: np.ndarray, curves: Any, target: Any, low: np.ndarray, high: np.ndarray, seed: int = 0
+) -> np.ndarray:
     """Point (d,) between `low` and `high` where a spline through the runs is nearest to the target.
 
     Parameters
@@ -59,7 +63,9 @@ def emulated_best(points, curves, target, low, high, seed=0):
     return low + found.x * (high - low)
 
 
-def search(simulate, target, low, high, seed=0):
+def search(
+    simulate: Any, target: Any, low: np.ndarray, high: np.ndarray, seed: int = 0
+) -> np.ndarray:
     """Point (d,) of the least misfit, roughly.
 
     Parameters

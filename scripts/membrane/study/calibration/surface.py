@@ -7,6 +7,7 @@ tells the scatter itself.
 """
 
 from dataclasses import dataclass
+from typing import Any
 from itertools import combinations_with_replacement
 
 import numpy as np
@@ -28,17 +29,17 @@ class Region:
     high: np.ndarray
 
     @classmethod
-    def about(cls, point, low, high):
+    def about(cls, point: Any, low: np.ndarray, high: np.ndarray) -> "Region":
         """Region about a point, pushed inside the bounds `low` and `high` (d,)."""
         low, high = np.asarray(low), np.asarray(high)
         middle = np.clip(point, np.minimum(low + HALF, high), np.maximum(high - HALF, low))
         return cls(np.maximum(middle - HALF, low), np.minimum(middle + HALF, high))
 
-    def holds(self, points):
+    def holds(self, points: np.ndarray) -> np.ndarray:
         """Which of points (n, d) lie inside: (n,) bool."""
         return np.all((points >= self.low) & (points <= self.high), axis=1)
 
-    def scaled(self, points):
+    def scaled(self, points: np.ndarray) -> np.ndarray:
         """Points (n, d) as -1 to 1 from `low` to `high`."""
         return (2 * np.atleast_2d(points) - self.low - self.high) / (self.high - self.low)
 
@@ -63,7 +64,7 @@ class Surface:
         Standard deviation of a run about the surface.
     """
 
-    def __init__(self, region, points, curves):
+    def __init__(self, region: Any, points: np.ndarray, curves: Any) -> None:
         self.region, self.points = region, np.asarray(points)
         terms = self._terms(self.points)
         self.freedom = len(points) - terms.shape[1]
@@ -79,7 +80,7 @@ class Surface:
         products = combinations_with_replacement(range(z.shape[1]), 2)
         return np.column_stack([np.ones(len(z)), z, *(z[:, i] * z[:, j] for i, j in products)])
 
-    def __call__(self, point):
+    def __call__(self, point: np.ndarray) -> np.ndarray:
         """Curves (C, S) at a point (d,)."""
         return np.tensordot(self._terms(point)[0], self._coefficients, 1)
 
@@ -93,16 +94,16 @@ class Surface:
         )
         return np.array(list(differences))
 
-    def slopes(self, point):
+    def slopes(self, point: Any) -> np.ndarray:
         """Derivatives (d, C, S) of the curves by the logarithms."""
         return np.tensordot(self._steps(point), self._coefficients, 1)
 
-    def leverage(self, point):
+    def leverage(self, point: Any) -> Any:
         """Variance of the surface at a point (d,) over that of a run [-]."""
         terms = self._terms(point)[0]
         return float(terms @ self._inverse @ terms)
 
-    def slope_leverage(self, point):
+    def slope_leverage(self, point: Any) -> Any:
         """Covariance (d, d) of the slopes at a point over the variance of a run [-]."""
         steps = self._steps(point)
         return steps @ self._inverse @ steps.T
@@ -128,17 +129,17 @@ class Estimate:
     lack_of_fit: float
 
     @property
-    def sigma(self):
+    def sigma(self) -> np.ndarray:
         """Standard deviations (d,) of the logarithms."""
         return np.sqrt(np.diag(self.covariance))
 
     @property
-    def correlation(self):
+    def correlation(self) -> float:
         """Between the first and the last parameter [-]; 1 if there is but one."""
         return float(self.covariance[0, -1] / (self.sigma[0] * self.sigma[-1]))
 
 
-def estimate(surface, target):
+def estimate(surface: Any, target: Any) -> Estimate:
     """Weighted least squares of the target by the surface, within its region.
 
     The covariance is that of the linear estimator P = A^-1 J' about the solution, J the weighted
@@ -207,7 +208,9 @@ def _inverse(squares, scatter):
     return half.T @ (vectors / np.maximum(shares, LEAST)) @ vectors.T @ half
 
 
-def refine(simulate, target, point, low, high, seed=0):
+def refine(
+    simulate: Any, target: Any, point: Any, low: np.ndarray, high: np.ndarray, seed: int = 0
+) -> tuple[Surface, Estimate]:
     """Estimate from surfaces about `point`, moved until the estimate lies inside.
 
     Parameters
@@ -243,7 +246,7 @@ def refine(simulate, target, point, low, high, seed=0):
     return surface, found
 
 
-def at_bound(point, low, high):
+def at_bound(point: Any, low: np.ndarray, high: np.ndarray) -> np.ndarray:
     """Which parameters (d,) lie at a bound: (d,) bool."""
     room = 0.01 * (np.asarray(high) - low)
     return (point - low < room) | (high - point < room)

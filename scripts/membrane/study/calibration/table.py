@@ -1,13 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Tables as programs for measurements and spreadsheets write them."""
 
+import numpy as np
+
+from pathlib import Path
+from typing import Any
+
 import csv
 
 from membrane.files import BadFile, read_text
 from membrane.results.history import columns_of
 
 
-def read_table(path, wanted):
+def read_table(path: str | Path, wanted: Any) -> dict[str, np.ndarray]:
     """Columns of a table with a header: dict of (S,) float by name.
 
     Commas, semicolons, tabs or blanks part the columns, as the header tells; blanks beside them,
@@ -25,8 +30,8 @@ def read_table(path, wanted):
     BadFile
         If it is no table, or these columns hold something else than finite numbers.
     """
-    lines = read_text(path).replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    lines = [(number, line) for number, line in enumerate(lines, start=1) if line.strip(" \t,;")]
+    text = read_text(path).replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    lines = [(number, line) for number, line in enumerate(text, start=1) if line.strip(" \t,;")]
     if not lines:
         raise BadFile(path, "", "is empty")
     (first, header), *lines = lines

@@ -78,7 +78,7 @@ def grid(
             raise ValueError(
                 "give several values of a parameter, such as --omega 10 20: they make the grid"
             )
-        axes = {name: given.get(name, values) for name, values in TABLE_2_CASES.items()}
+        axes = {name: given.get(name, [*values]) for name, values in TABLE_2_CASES.items()}
         base = {"duration": TABLE_2_DURATION, **base}
     common = {**base, **{name: v[0] for name, v in given.items() if name not in axes}}
     points = [dict(zip(axes, values)) for values in product(*axes.values())]

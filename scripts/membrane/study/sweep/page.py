@@ -2,6 +2,7 @@
 """The page of a sweep's report: one HTML file that shows pictures and tables."""
 
 import os
+from typing import Any
 from urllib.parse import quote
 
 from jinja2 import Environment, StrictUndefined
@@ -121,7 +122,7 @@ def place(path: str) -> str:
     return quote(os.fsencode(path))
 
 
-def render(**content) -> str:
+def render(**content: Any) -> str:
     """The page's HTML; all texts are escaped."""
     environment = Environment(
         autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined

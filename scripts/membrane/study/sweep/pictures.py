@@ -6,7 +6,7 @@ Figures are drawn to files only; no window system is needed.
 
 from collections.abc import Collection, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib import colormaps
@@ -45,7 +45,7 @@ def short(value: float | str) -> str:
     return f"{value:g}" if isinstance(value, (int, float)) else str(value)
 
 
-def draw_curves(axes, curves: dict, lasts: Sequence = (), about: Axes = TABLE_2) -> dict:
+def draw_curves(axes: Any, curves: dict, lasts: Sequence = (), about: Axes = TABLE_2) -> dict:
     """Draw curves of cases: the colour tells the last parameter, the kind of line the others.
 
     Parameters
@@ -100,7 +100,7 @@ def plot_curves(
     count = 1 if together else min(len(others), MANY)
     chunks = np.array_split(np.arange(len(others)), count)
     figure, panels, columns = _panels(count)
-    handles = {}
+    handles: dict = {}
     for number, (panel, chunk) in enumerate(zip(panels, chunks)):
         group = [others[i] for i in chunk]
         chosen = {place: curve for place, curve in curves.items() if place[:-1] in group}

@@ -67,7 +67,7 @@ def _draw_curves(placed, axes, folder):
     sails = dict.fromkeys(case.about["sail"] for case in placed.values())
     measures = dict.fromkeys(m for sail in sails for m in (*SAILS[sail].measures, *HUB))
     drawn = {}
-    for title, unit, factor, (line, *_) in in_plots(measures, columns):
+    for title, unit, factor, (line, *_) in in_plots([*measures], columns):
         curves = {
             place: (history["time"], factor * history[line.name])
             for place, history in told.items()
@@ -119,7 +119,7 @@ def _fields(cases):
 def content(cases: list[Status], drawn: dict[str, str], folder: Path) -> dict:
     """What the page shows, ready for its template."""
     names, told, about = varied(cases), outcomes(cases), _fields(cases)
-    known = next((case.parameters for case in cases if case.parameters), {})
+    known: dict = next((case.parameters for case in cases if case.parameters), {})
     states = [case.state for case in cases]
     units = [about[name]["unit"] if name in about else "-" for name in names]
     return {
@@ -169,7 +169,7 @@ def _short(value):
 
 def _versions(cases):
     """Versions by name; where cases differ, all of them."""
-    found = {}
+    found: dict = {}
     for case in cases:
         for name, value in case.about.get("versions", {}).items():
             found.setdefault(name, []).append(str(value))

@@ -52,13 +52,15 @@ def values(case: Status, names: list[str]) -> tuple:
 def outcomes(cases: list[Status]) -> list[Outcome]:
     """Those of the cases' kinds of sail, and what else their summaries tell but of the ledger."""
     sails = {case.about["sail"] for case in cases if case.about}
-    names = dict.fromkeys(o.name for sail in sails for o in SAILS[sail].outcomes)
-    names |= dict.fromkeys(name for case in cases for name in case.measures)
+    told = dict.fromkeys(o.name for sail in sails for o in SAILS[sail].outcomes)
+    told |= dict.fromkeys(name for case in cases for name in case.measures)
     known = {o.name: o for o in EVERY_OUTCOME}
-    names = [n for n in known if n in names] + [n for n in names if n not in known]
+    names = [n for n in known if n in told] + [n for n in told if n not in known]
     ledger = {o.name for o in LEDGER_OUTCOMES}
     return [
-        known.get(n, Outcome(n, "-", n.replace("_", " "), None)) for n in names if n not in ledger
+        known.get(n, Outcome(n, "-", n.replace("_", " "), lambda history: None))
+        for n in names
+        if n not in ledger
     ]
 
 
@@ -92,6 +94,6 @@ def _column(outcome):
     return outcome.name if unit == "-" else f"{outcome.name}_{unit}"
 
 
-def _plain(value: Any):
+def _plain(value: Any) -> str:
     """A value as it goes into the table."""
     return "" if value is None else text(value)
