@@ -283,7 +283,7 @@ const Refusal refusals[] = {
      [](MeshInput& in) {
          in.creases[0] = {1, 3};
      },
-     {"creases[0]", "no side"}},
+     {"creases[0]", "not a side"}},
     {"CreaseOnTheEdge",
      [](MeshInput& in) {
          in.creases[0] = {0, 1};

@@ -157,7 +157,7 @@ class TestSides(ChangeTest):
         made = self.law2()
         a, b = made.membrane.sides[5]
         O.interactions.erase(a, b)
-        self.refused(rf"side {a}-{b} \(bodies #{a} and #{b}\) is no interaction")
+        self.refused(rf"side {a}-{b} \(bodies #{a} and #{b}\) has no interaction")
 
     def test_interactions_added_again_are_taken(self):
         made = self.law2()
@@ -184,7 +184,7 @@ class TestSides(ChangeTest):
             self.law2()
             setattr(O.interactions[0, 1], name, other())
             self.refused(
-                f"#0 and #1 interact by a .*{other.__name__}|side 0-1 .* is no interaction"
+                f"#0 and #1 interact by a .*{other.__name__}|side 0-1 .* has no interaction"
             )
 
     def test_nodes_that_are_no_side(self):

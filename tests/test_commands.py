@@ -13,8 +13,11 @@ from functools import lru_cache
 from pathlib import Path
 from unittest.mock import patch
 
-from membrane import scene
+import numpy as np
+from membrane import Membrane, scene
 from membrane.cli import errors
+from membrane.measures import tip_azimuths
+from membrane.parameters import SailParameters
 from membrane.results.unfinished import UNFINISHED
 from membrane.results.case_folder import LAST_GOOD
 from processes import Halt
@@ -279,29 +282,40 @@ class TestEarlierResults(BadDayTest):
 
 
 class TestErrors(unittest.TestCase):
-    def ends(self, error, debug=None):
-        """What is printed, and the last sentence, where a command raises an error."""
+    def ends(self, fail, debug=None):
+        """What is printed, and the last sentence, where a command calls a function that fails."""
         given = {} if debug is None else {errors.DEBUG: debug}
         said = io.StringIO()
         with patch.dict(os.environ, given), redirect_stderr(said):
             with self.assertRaises(SystemExit) as caught, errors.plain_errors("fold"):
-                raise error
+                fail()
         return said.getvalue(), caught.exception.code
 
     def test_what_is_foreseen_is_one_sentence(self):
         for debug in (None, "", "0"):
-            said, end = self.ends(ValueError("beta = -1 must be >= 0"), debug)
+            said, end = self.ends(lambda: SailParameters(beta=-1), debug)
             self.assertEqual((said, end), ("", "fold: beta = -1 must be >= 0"))
+            said, end = self.ends(lambda: Membrane(nodes=[(0, 0, 0)]), debug)
+            self.assertRegex(end, "^fold: Membrane: material is missing")
+            said, end = self.ends(lambda: open("/nowhere/at/all"), debug)
+            self.assertRegex(end, "^fold: .*No such file")
 
     def test_its_traceback_is_shown_to_those_who_ask(self):
-        said, end = self.ends(ValueError("beta = -1 must be >= 0"), "1")
+        said, end = self.ends(lambda: SailParameters(beta=-1), "1")
         self.assertEqual(end, "fold: beta = -1 must be >= 0")
-        self.assertRegex(said, r"Traceback (?s:.*)in ends\n *raise error\nValueError: beta")
+        self.assertRegex(said, r"Traceback (?s:.*)in ends\n *fail\(\)\n(?s:.*)ValueError: beta")
 
     def test_a_fault_of_the_program_is_a_traceback_and_a_word(self):
-        said, end = self.ends(KeyError("sides"))
-        self.assertRegex(said, r"Traceback (?s:.*)KeyError: 'sides'")
-        self.assertRegex(end, "^fold: this is a bug in the program.* please report it")
+        shapes = "could not be broadcast together"
+        for fail, words in (
+            (lambda: {}["sides"], "KeyError: 'sides'"),
+            (lambda: np.zeros(2) + np.zeros(3), f"ValueError: operands {shapes}"),
+            (lambda: tip_azimuths(None, np.zeros(3)), "AttributeError: 'NoneType'"),
+            (lambda: int("many"), "ValueError: invalid literal"),
+        ):
+            said, end = self.ends(fail)
+            self.assertRegex(said, rf"Traceback (?s:.*){words}")
+            self.assertRegex(end, "^fold: this is a bug in the program.* please report it")
 
 
 class TestReadOnlyBuild(BadDayTest):

@@ -1,17 +1,23 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """How the commands of scripts/ end where something is wrong: one sentence and an exit status."""
 
+import linecache
 import os
+import re
 import signal
 import sys
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from pathlib import Path
 
+from .. import _load
 from ..progress import Terminated
 
 STOPPED, TERMINATED = 130, 143  # exit statuses after Ctrl-C and SIGTERM, as shells have them
 DEBUG = "MEMBRANE_DEBUG"  # variable of the environment: show where errors come from
+PACKAGE = Path(__file__).resolve().parents[1]
+PLUGIN = rf"({'|'.join(_load.CLASSES)})\b"  # how messages of its classes begin
 DEBIAN = {"vtkmodules": "vtk9"}  # packages whose names in Python and in Debian differ
 
 
@@ -56,19 +62,32 @@ def plain_errors(command: str, stopped: str = "stopped by Ctrl-C") -> Iterator[N
         )
     except BrokenPipeError:
         sys.exit(f"{command}: its output is no longer read")
-    except (ImportError, ValueError, RuntimeError, OSError) as error:
+    except Exception as error:
+        if not _is_foreseen(error):
+            traceback.print_exc()
+            sys.exit(
+                f"{command}: this is a bug in the program, not in its input; please report "
+                "it with the lines above, the command and its files"
+            )
         if os.environ.get(DEBUG, "0") not in ("", "0"):
             traceback.print_exc()
         sys.exit(f"{command}: {str(error) or type(error).__name__}")
-    except Exception:
-        traceback.print_exc()
-        sys.exit(
-            f"{command}: this is a bug in the program, not in its input; please report "
-            "it with the lines above, the command and its files"
-        )
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+def _is_foreseen(error):
+    """Whether an error is one that this package or its plugin raises itself, or the system's."""
+    if isinstance(error, (ImportError, OSError)):
+        return True
+    if not isinstance(error, (ValueError, RuntimeError)):
+        return False
+    frame, line = list(traceback.walk_tb(error.__traceback__))[-1]
+    file = frame.f_code.co_filename
+    raised = linecache.getline(file, line).lstrip().startswith("raise ")
+    is_ours = PACKAGE in Path(file).resolve().parents
+    return raised and is_ours or re.match(PLUGIN, str(error)) is not None
 
 
 def _terminate(number, frame):
