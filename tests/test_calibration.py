@@ -470,7 +470,7 @@ class TestStopped(unittest.TestCase):
         kill(process)
         done = calibrate(path, *self.COARSE, "--out", folder)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stderr, r"(?m)^\d+ runs are there already")
+        self.assertRegex(done.stderr, r"(?m)^calibrate: .*: \d+ runs are there already")
         for name in ("calibration.json", "runs.csv"):
             self.assertEqual((folder / name).read_text(), (quiet / name).read_text())
         self.assertFalse(list(folder.glob("unfinished*")))

@@ -850,7 +850,7 @@ BAD = {
     "options: {zeta: yes}": "--zeta: expected at least one argument",
     "options: {crease_law: mine}": "--crease-law: invalid choice: 'mine'",
     "options: {force_time_step: 1}": "--force-time-step: must be true or false, not '1'",
-    "options: {checkpoint_every: soon}": "--checkpoint-every: invalid float value: 'soon'",
+    "options: {checkpoint_every: soon}": "--checkpoint-every: must be a number, not 'soon'",
     "sail: 3": "sail: must be a word, not 3",
     "sail: miura\ngrid: {fold_lines: [3, 7]}": "unrecognized arguments: --fold-lines 3 7",
     "threads: many": "--threads: must be a number, not 'many'",
@@ -903,8 +903,9 @@ class TestCommandLine(CommandTest):
         for option in ("-j0", "--jobs=-1", "--threads=00"):
             done = self.dry(option)
             self.assertRegex(done.stderr, "sweep: error: argument .*: must be at least 1\n$")
+        done = self.dry("--checkpoint-every=-1")
+        self.assertRegex(done.stderr, "sweep: error: argument .*: -1: must be >= 0 and finite\n$")
         self.ends_with_one_sentence(self.dry("miura"), "sweep", "give several values")
-        self.ends_with_one_sentence(self.dry("--checkpoint-every=-1"), "sweep", "must be >= 0")
         (self.folder / "file").write_text("")
         (self.folder / "summary.json").write_text("")
         done = self.dry("--out", ".")

@@ -29,8 +29,20 @@ MILLIJOULES = Shown("mJ", 1e3)
 MICROSTRAIN = Shown("10⁻⁶", 1e6)
 
 
+class InUnits:
+    """Something with a unit, SI, and perhaps another that is shown."""
+
+    unit: str
+    shown: Shown | None
+
+    @property
+    def form(self) -> Shown:
+        """The unit that people read, SI if there is no other, and its factor."""
+        return self.shown or Shown(self.unit, 1.0)
+
+
 @dataclass(frozen=True)
-class Measure:
+class Measure(InUnits):
     """What is measured at every row of a history.
 
     Attributes
@@ -65,7 +77,7 @@ class Measure:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class Outcome(InUnits):
     """What summary.json tells of a whole run, among `measures`.
 
     Attributes
@@ -552,7 +564,7 @@ def in_plots(measures: Sequence[Measure], history: dict[str, np.ndarray]) -> lis
     result = []
     for title, lines in found.items():
         told = [m for m in lines if history[m.name].any()] or lines[:1]
-        result.append(Plot(title, *(lines[0].shown or Shown(lines[0].unit, 1.0)), told))
+        result.append(Plot(title, *lines[0].form, told))
     return result
 
 
@@ -568,7 +580,7 @@ def table(found: dict) -> list[list[str]]:
             label, unit, factor = name.replace("_", " "), "", 1.0
         else:
             about = known[name]
-            label, (unit, factor) = about.label, about.shown or (about.unit, 1.0)
+            label, (unit, factor) = about.label, about.form
         if value is None:
             rows.append([label, "never", ""])
         elif type(value) in (int, float):

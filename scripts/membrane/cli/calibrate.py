@@ -181,21 +181,16 @@ def write_runs(path: Path, simulate: Deployments, names: list[str], target: Any)
     np.savetxt(path, rows, header=header, **form)
 
 
-def teller(names: list[str], target: Any) -> Callable:
-    """A function that tells of each run."""
-    say_when, number = announcer("calibrate"), count(1)
+def teller(names: list[str], target: Any, say: Callable[[str], None]) -> Callable:
+    """A function that tells of each run, by one that tells a line."""
+    number = count(1)
 
     def tell(values, curves):
         where = ", ".join(f"{name} {value:.4g}" for name, value in zip(names, values))
         off = "diverged" if curves is None else f"misfit {misfit(curves, target):.3g}"
-        say_when(f"run {next(number):3d}  {where}: {off}")
+        say(f"run {next(number):3d}  {where}: {off}")
 
     return tell
-
-
-def say(line: str) -> None:
-    """Tell the user a line about how it goes."""
-    print(line, file=sys.stderr, flush=True)
 
 
 def main() -> None:
@@ -209,7 +204,9 @@ def main() -> None:
         if name not in free
     ]
     target = read_target(arguments.target, arguments.column or (), arguments.until, kind.sail)
-    simulate = Deployments(DEPLOY, names, target, [*scene, *held], teller(names, target))
+    say = announcer("calibrate")
+    tell = teller(names, target, say)
+    simulate = Deployments(DEPLOY, names, target, [*scene, *held], tell)
     kept = arguments.out / KEPT
     # A folder that cannot be is refused before the runs.
     with new_results(arguments.out, CALIBRATION) as part:

@@ -11,7 +11,7 @@ from typing import Any
 
 from ..results.case_folder import COMPLETE
 from ..run.case import run_case
-from .options import add_out, chosen_sail, from_arguments, parse, sails_text
+from .options import add_checkpoints, add_out, chosen_sail, from_arguments, parse, sails_text
 
 
 def command_line(kind: Any, words: list[str]) -> argparse.Namespace:
@@ -25,13 +25,7 @@ def command_line(kind: Any, words: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--no-pictures", action="store_true", help="draw no pictures and write no report.html"
     )
-    parser.add_argument(
-        "--checkpoint-every",
-        type=float,
-        default=60.0,
-        metavar="SECONDS",
-        help="wall time between two checkpoints [s], >= 0 (default 60)",
-    )
+    add_checkpoints(parser)
     return parse(parser, kind, words)
 
 

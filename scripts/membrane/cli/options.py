@@ -10,7 +10,7 @@ from typing import Any
 
 from ..files import shown
 from ..parameters import PARSERS, Refused, SailParameters, check_name, describe
-from ..parameters import read_values, whole
+from ..parameters import number, read_values, whole
 from ..run.sails import SAILS
 
 
@@ -42,6 +42,21 @@ def add_out(
     """Add the option --out, a folder; its help is `text` with the default."""
     text, default = text.format(default), default and Path(default)
     parser.add_argument("--out", type=folder, default=default, metavar="DIR", help=text)
+
+
+def add_checkpoints(parser: argparse.ArgumentParser) -> None:
+    """Add the option --checkpoint-every."""
+    text = "wall time between two checkpoints of a case [s], >= 0 (default 60)"
+    form: dict[str, Any] = {"type": _interval, "default": 60.0, "metavar": "SECONDS"}
+    parser.add_argument("--checkpoint-every", **form, help=text)
+
+
+def _interval(word):
+    """A time from a word of the command line, which must be finite and not below 0."""
+    found = number(word)
+    if not 0 <= found < float("inf"):
+        raise Refused(f"{word}: must be >= 0 and finite")
+    return found
 
 
 def add_only(

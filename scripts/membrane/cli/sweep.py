@@ -17,7 +17,8 @@ from ..parameters import RunParameters, read_values
 from ..results.case_folder import COMPLETE, DAMAGED, DIVERGED, identity, look
 from ..study.sweep import grid, jobs
 from ..study.sweep.report import report
-from .options import add_arguments, add_file, add_out, chosen_sail, count, file, folder, sails_text
+from .options import add_arguments, add_checkpoints, add_file, add_out, chosen_sail, count, file
+from .options import folder, sails_text
 
 ON_SLURM = 100  # jobs at once, unless told otherwise
 
@@ -35,7 +36,7 @@ class _Parser(argparse.ArgumentParser):
 
 def command_line(words: list[str]) -> tuple[argparse.Namespace, type[RunParameters], dict]:
     """What is asked for, the class of parameters, and values (list) of those given, by name."""
-    split = 0 if not words or words[0].startswith("-") else 1
+    split = bool(words) and not words[0].startswith("-")
     first, rest = words[:split], words[split:]
     asking = argparse.ArgumentParser(prog="sweep", add_help=False, allow_abbrev=False)
     asking.add_argument("--config", type=file)
@@ -87,16 +88,9 @@ def _parser(kind):
     ):
         text = f"{text} (default {default})"
         parser.add_argument(f"--{name}", type=count, default=default, metavar="N", help=text)
-    parser.add_argument(
-        "--checkpoint-every",
-        type=float,
-        default=60.0,
-        metavar="SECONDS",
-        help="wall time between two checkpoints of a case (default 60)",
-    )
-    parser.add_argument(
-        "--no-pictures", action="store_true", help="neither pictures nor pages of single cases"
-    )
+    text = "neither pictures nor pages of single cases"
+    parser.add_argument("--no-pictures", action="store_true", help=text)
+    add_checkpoints(parser)
     add_file(parser)
     add_arguments(parser, kind, several=True)
     return parser
@@ -109,8 +103,6 @@ def main() -> int:
         parser.add_argument("folder", type=folder, help="folder of the sweep, or of the cases")
         return tell_report(parser.parse_args(sys.argv[2:]).folder)
     asked, kind, given = command_line(sys.argv[1:])
-    if not 0 <= asked.checkpoint_every < float("inf"):
-        raise ValueError("--checkpoint-every must be >= 0 and finite")
     base = read_values(asked.parameters, kind) if asked.parameters is not None else {}
     cases, out = grid.grid(kind, given, base), asked.out.absolute()
     grid.refuse_other_results(out)
@@ -118,12 +110,10 @@ def main() -> int:
         for name, p in cases.items():
             print(f"{name}: {look(out / grid.CASES / name, identity(p)).state}")
         return 0
-    cores = asked.jobs or (ON_SLURM if asked.slurm else len(os.sched_getaffinity(0)))
-    of_each = asked.threads, asked.memory, asked.minutes
-    how = jobs.Jobs(cores, *of_each, asked.slurm, asked.checkpoint_every, not asked.no_pictures)
+    asked.jobs = asked.jobs or (ON_SLURM if asked.slurm else len(os.sched_getaffinity(0)))
     with jobs.alone(out, asked.slurm, tell):
         grid.plan(out, cases)
-        jobs.run(out, cases, how, tell)
+        jobs.run(out, cases, asked, tell)
         return tell_report(out)
 
 

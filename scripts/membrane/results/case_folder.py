@@ -4,7 +4,6 @@
 import fcntl
 import os
 import sys
-from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from hashlib import sha256
 from pathlib import Path
@@ -33,33 +32,15 @@ class Damaged(ValueError):
 
 @dataclass
 class Status:
-    """What has become of a case.
-
-    Attributes
-    ----------
-    folder : Path
-        Of the case, be it there or not.
-    state : str
-        COMPLETE, DIVERGED, FAILED, KILLED, RUNNING, MISSING or DAMAGED.
-    reason : str
-        Why, unless it is complete.
-    about : dict
-        What it is, as of `identity`, with "versions"; empty if nobody knows.
-    time : float or None
-        When it diverged, after the release [s]; None if before.
-    history : dict of (S,) float
-        Columns of its history.csv that are drawn, if there are rows.
-    measures : dict
-        What summary.json tells of a complete case.
-    """
+    """What has become of a case, be its folder there or not."""
 
     folder: Path
-    state: str
-    reason: str = ""
-    about: dict = field(default_factory=dict)
-    time: float | None = None
-    history: dict = field(default_factory=dict)
-    measures: dict = field(default_factory=dict)
+    state: str  # COMPLETE, DIVERGED, FAILED, KILLED, RUNNING, MISSING or DAMAGED
+    reason: str = ""  # why, unless it is complete
+    about: dict = field(default_factory=dict)  # its `identity` and "versions"; {}: nobody knows
+    time: float | None = None  # when it diverged, after the release [s]; None: before
+    history: dict = field(default_factory=dict)  # columns (S,) that are drawn, by name
+    measures: dict = field(default_factory=dict)  # what summary.json tells of a complete case
 
     @property
     def name(self) -> str:
@@ -108,19 +89,19 @@ def look(folder: str | Path, wanted: dict | None = None) -> Status:
 
 
 def finished(folder: Path, wanted: dict | None = None) -> Status | None:
-    """The Status of a finished case, whole and, if these are given, as `wanted`; None if none is.
+    """The Status of the finished case in a folder; None if there is none yet.
 
     Raises
     ------
     Damaged
-        If a folder holds something else, or a case that is not whole.
+        If it holds something else, or a case that is not whole.
     Another
-        If it holds another case.
+        If it holds another case than `wanted`.
     """
     if not os.path.lexists(folder) or _is_begun(folder):
         return None
     try:
-        found = read_result(folder)
+        found = _result(folder)
         if wanted:
             refuse_another(folder, found, wanted)
         is_complete = found["outcome"] == COMPLETE
@@ -150,7 +131,7 @@ def _advice(folder):
     return f"the case is damaged: remove {folder}, and the same command runs it again"
 
 
-def read_result(folder: Path) -> dict:
+def _result(folder):
     """What is in the case.json of a folder; BadFile or OSError if that cannot be a result."""
     path = folder / RESULT
     if not path.exists():
@@ -160,8 +141,7 @@ def read_result(folder: Path) -> dict:
     if outcome not in (COMPLETE, DIVERGED):
         raise BadFile(path, "outcome", f"is {shown(outcome)}; must be {COMPLETE} or {DIVERGED}")
     check_identity(path, "", found)
-    if not isinstance(found.get("versions"), dict):
-        raise BadFile(path, "versions", f"must be an object, not {shown(found.get('versions'))}")
+    _object(path, "versions", found.get("versions"))
     if outcome == DIVERGED:
         time, reason = found.get("time"), found.get("reason")
         if not (time is None or _is_number(time)):
@@ -176,12 +156,9 @@ def check_identity(path: Path, place: str, about: Any) -> None:
 
     Names of parameters of another version are let pass.
     """
-    if not isinstance(about, dict):
-        raise BadFile(path, place, f"must be an object, not {shown(about)}")
+    _object(path, place, about)
     below = f"{place}.parameters".removeprefix(".")
-    sail, values = about.get("sail"), about.get("parameters")
-    if not isinstance(values, dict):
-        raise BadFile(path, below, f"must be an object, not {shown(values)}")
+    sail, values = about.get("sail"), _object(path, below, about.get("parameters"))
     for name, value in values.items():
         if not (isinstance(value, (bool, str)) or _is_number(value)):
             where = f"{below}.{shown(name)[1:-1]}"
@@ -194,6 +171,13 @@ def check_identity(path: Path, place: str, about: Any) -> None:
         KINDS[sail](**{name: value for name, value in values.items() if name in known})
     except ValueError as error:
         raise BadFile(path, below, str(error)) from None
+
+
+def _object(path: Path, place: str, value: Any) -> dict:
+    """The value of a place in a file; BadFile if it is no object."""
+    if not isinstance(value, dict):
+        raise BadFile(path, place, f"must be an object, not {shown(value)}")
+    return value
 
 
 def _history(folder, is_complete):
@@ -221,9 +205,7 @@ def _history(folder, is_complete):
 
 def _measures(path):
     """What a summary.json tells among its measures: numbers, and None where there is none."""
-    found = read_object(path).get("measures")
-    if not isinstance(found, Mapping):
-        raise BadFile(path, "measures", f"must be an object, not {shown(found)}")
+    found = _object(path, "measures", read_object(path).get("measures"))
     for name, value in found.items():
         if not (value is None or _is_number(value)):
             where = f"measures.{shown(name)[1:-1]}"

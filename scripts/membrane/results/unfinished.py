@@ -21,25 +21,15 @@ RESULT = "case.json"  # comes last: who sees it sees all
 IDENTITY = ("sail", "sum_of_file")  # of a case, beside its parameters
 
 # What the commands leave in an output folder: refused at once where it is another's.
+OF_A_RUN = """
+summary.json wall_time.json history.csv history.units.json shapes sail.fold shapes.png
+deployment.png history.png ikaros.png report.html sail.mp4 sail.gif
+""".split()
 RESULTS = {
-    own.RUN: (
-        "summary.json",
-        "wall_time.json",
-        "history.csv",
-        "history.units.json",
-        "shapes",
-        "sail.fold",
-        "shapes.png",
-        "deployment.png",
-        "history.png",
-        "ikaros.png",
-        "report.html",
-        "sail.mp4",
-        "sail.gif",
-    ),
-    own.CALIBRATION: ("calibration.json", "calibration.png", "runs.csv"),
+    own.RUN: OF_A_RUN,
+    own.CASE: [*OF_A_RUN, RESULT],
+    own.CALIBRATION: ["calibration.json", "calibration.png", "runs.csv"],
 }
-RESULTS[own.CASE] = (*RESULTS[own.RUN], RESULT)
 
 
 class Another(ValueError):
@@ -54,7 +44,7 @@ def new_results(
 
     Where the block ends by an error, `folder` holds what it held before and, in
     `folder`/unfinished, what the run had written; the next run begins by removing that, unless it
-    can go on from there: then also the reason is kept, and it waits for a process that runs it.
+    can go on from there: then the reason is kept, too, and it waits for another process's run.
 
     Parameters
     ----------
@@ -63,14 +53,13 @@ def new_results(
     kind : str
         Of the results: own.RUN, CASE or CALIBRATION.
     resume : dict, optional
-        Of a run that can go on: what it is about, ready for JSON, with its "sail" and
-        "parameters". What an earlier process has left that was about the same is kept.
+        What a run that can go on is about, ready for JSON: "sail", "parameters" and others. What
+        an earlier process has left that was about the same is kept.
 
     Raises
     ------
     ValueError
-        If another process writes results there, or something of another's would be lost, or a
-        case that can go on.
+        If another process writes there, or something of another's or a case would be lost.
     """
     folder = Path(folder)
     part = folder / UNFINISHED
@@ -140,13 +129,9 @@ def refuse_begun(part: Path, about: dict | None) -> None:
 
 
 def refuse_another(folder: Path, was: dict, now: dict | None) -> None:
-    """Raise Another if the case of a folder differs in sail, parameters or the sheet's file.
+    """Raise Another if a folder's case differs in sail, parameters or the sheet's file.
 
-    Parameters
-    ----------
-    folder : Path
-    was, now : dict
-        What its files say, and what a run is about; None: nothing.
+    `was` is what its files say of it, `now` what a run is about, None: no case.
     """
     if now is None:
         raise Another(f"{folder} holds a case that can go on")

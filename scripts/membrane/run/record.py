@@ -172,7 +172,7 @@ class Recorder:
     def told(self, name: str, row: dict[str, float]) -> str:
         """One of the measures of a row, in words."""
         (m,) = [measure for measure in self.measures if measure.name == name]
-        unit, factor = m.shown or (m.unit, 1.0)
+        unit, factor = m.form
         return f"{m.label} {factor * row[name]:.3f}{'' if unit == '-' else ' ' + unit}"
 
     def shape(self, time: float) -> None:

@@ -64,7 +64,7 @@ def draw(
 
 def _draw_curve(above, below, target, i, measure, fit, scatter):
     """The curve of a Measure, and below it what target and runs are off the fit."""
-    unit, scale = measure.shown or (measure.unit, 1.0)
+    unit, scale = measure.form
     times, label = 1e3 * target.times, measure.name.replace("_", " ")
     above.plot(times, scale * target.values[i], ".", color="0.5", markersize=4, label="target")
     above.plot(times, scale * fit[i], color="C0", label="fit")

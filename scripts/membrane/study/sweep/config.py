@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The short configuration of a sweep: a file of YAML or JSON, turned into words of its command."""
+"""The short configuration of a sweep: a file of YAML, turned into words of its command."""
 
-import json
 from typing import Any
 
 import yaml
@@ -14,10 +13,7 @@ NAMES = ("sail", *MAPS, "out", "threads", "memory", "minutes", "jobs", "slurm")
 def config_words(path: str) -> tuple[str, list[str]]:
     """SAIL, "" if there is none, and the further words that a configuration stands for.
 
-    Raises
-    ------
-    BadFile or OSError
-        Where it is none; what is no option of the sweep is found by who parses the words.
+    BadFile or OSError if it is none; who parses the words finds what is no option of the sweep.
     """
     config = read_config(path)
     for name in config:
@@ -51,10 +47,10 @@ def _word(name):
 
 
 def read_config(path: str) -> dict[Any, Any]:
-    """The object in a file of YAML or JSON; BadFile or OSError if there is none."""
+    """The object in a file of YAML, as JSON is, too; BadFile or OSError if there is none."""
     text = read_text(path)
     try:
-        found = _parsed(text)
+        found = yaml.load(text, _Loader)
     except GivenTwice as error:
         raise BadFile(path, str(error), "is given twice") from None
     except yaml.YAMLError as error:
@@ -69,16 +65,6 @@ def read_config(path: str) -> dict[Any, Any]:
     if not isinstance(found, dict):
         raise BadFile(path, "", f"must hold names with values, not {shown(found)}")
     return found
-
-
-def _parsed(text):
-    """What a text of JSON or else of YAML says."""
-    try:
-        return json.loads(text, object_pairs_hook=one_of_each)
-    except GivenTwice:
-        raise
-    except ValueError:
-        return yaml.load(text, _Loader)
 
 
 class _Loader(yaml.SafeLoader):

@@ -7,72 +7,32 @@ import shutil
 import subprocess
 import sys
 import time
+from argparse import Namespace
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 
 from membrane.files import write_json
 from membrane.parameters import RunParameters
 from membrane.progress import Progress
 from membrane.results import own
-from membrane.results.case_folder import DAMAGED, FAILED, HISTORY, KILLED, MISSING, RUNNING
-from membrane.results.case_folder import identity, look
+from membrane.results.case_folder import DAMAGED, FAILED, HISTORY, KILLED, RUNNING, identity, look
 from membrane.results.unfinished import UNFINISHED
 
 from .family import end, job_name, mark
 from .grid import CASES, case_words
 
 WORK = "snakemake"  # folder of what Snakemake does, and of what it and the cases say
-LOG = "snakemake.log"
 ROUNDS = 3  # how often in one sweep a case is started that was stopped from outside
 SNAKEFILE = Path(__file__).with_name("Snakefile")
 SCRIPT = Path(sys.argv[0]).resolve().with_name("case.py")  # beside that of the sweep
 LOOK = 0.5  # [s], between two looks at the cases
 
-
-@dataclass(frozen=True)
-class Jobs:
-    """How cases are run.
-
-    Attributes
-    ----------
-    cores : int
-        Of this machine, that they share; or how many jobs are on Slurm at once.
-    threads, memory, minutes : int
-        Of each case, the last two on Slurm only; memory in MB.
-    slurm : bool
-    checkpoint_every : float
-        Wall time between two checkpoints of a case [s].
-    pictures : bool
-        Draw each case's own pictures and write its page.
-    """
-
-    cores: int
-    threads: int
-    memory: int
-    minutes: int
-    slurm: bool
-    checkpoint_every: float
-    pictures: bool
-
-    def command(self, folder: Path, name: str, p: RunParameters) -> str:
-        """What the shell is to do for a case of the sweep in a folder."""
-        words = ["yade", "-n", "-x", f"-j{self.threads}", str(SCRIPT), *case_words(p)]
-        words += [f"--out={folder / CASES / name}", f"--checkpoint-every={self.checkpoint_every}"]
-        words += [] if self.pictures else ["--no-pictures"]
-        here, log = Path.cwd(), folder / WORK / f"{name}.log"
-        if not self.slurm:
-            place, said = (shlex.quote(str(path)) for path in (here, log))
-            return f"cd {place} && exec {shlex.join(words)} > {said} 2>&1"
-        submit = ["sbatch", "--wait", "--quiet", f"--job-name={job_name(folder)}"]
-        submit += [f"--comment={name}", f"--cpus-per-task={self.threads}", f"--mem={self.memory}"]
-        submit += [f"--time={self.minutes}", f"--chdir={here}", f"--output={log}"]
-        return shlex.join([*submit, f"--wrap=exec {shlex.join(words)}"])
+Tell = Callable[[str], None]  # takes a line of text for the user
 
 
 @contextmanager
-def alone(folder: Path, slurm: bool, tell: Callable[[str], None]) -> Iterator[None]:
+def alone(folder: Path, slurm: bool, tell: Tell) -> Iterator[None]:
     """Hold the sweep's lock; ValueError if another process sweeps in this folder.
 
     Ends what an earlier sweep has left behind that was killed: its jobs outlive it.
@@ -83,22 +43,13 @@ def alone(folder: Path, slurm: bool, tell: Callable[[str], None]) -> Iterator[No
         yield
 
 
-def run(
-    folder: Path, cases: dict[str, RunParameters], how: Jobs, tell: Callable[[str], None]
-) -> None:
-    """Run those cases that are not finished yet.
+def run(folder: Path, cases: dict[str, RunParameters], how: Namespace, tell: Tell) -> None:
+    """Run those cases (by name) of the sweep in a folder that are not finished yet.
 
     Cases that were stopped from outside are started again, alone, up to ROUNDS times. Damaged ones
-    are told, and left as they are.
-
-    Parameters
-    ----------
-    folder : Path
-        Of the sweep.
-    cases : dict of RunParameters by name
-    how : Jobs
-    tell : callable
-        Takes a line of text for the user.
+    are told, and left as they are. `how` has the command's options: on how many cores or, with
+    `slurm`, as how many `jobs` at once; `threads`, `memory` [MB] and `minutes` of each case;
+    `checkpoint_every` [s]; `no_pictures`.
     """
     wanted = {name: identity(p) for name, p in cases.items()}
 
@@ -131,10 +82,25 @@ def _stopped(folder, now, again, tell):
             tell(f"{name} failed: {status.reason}")
         elif status.state == DAMAGED:
             tell(status.reason)
-        elif status.state in (KILLED, RUNNING, MISSING):
-            tell(f"{name}: {status.reason}{_last_words(folder, name)}{again}")
+        elif not status.is_finished:
+            words = [w for w in _lines(folder / WORK / f"{name}.log") if " %  " not in w]
+            last = f"; it said last: {words[-1]}" if words else ""
+            tell(f"{name}: {status.reason}{last}{again}")
             stopped.append(name)
     return stopped
+
+
+def _command(folder, name, p, how):
+    """What the shell is to do for a case."""
+    words = ["yade", "-n", "-x", f"-j{how.threads}", str(SCRIPT), *case_words(p)]
+    words += [f"--out={folder / CASES / name}", f"--checkpoint-every={how.checkpoint_every}"]
+    line = shlex.join(words + ["--no-pictures"] * how.no_pictures)
+    here, log = Path.cwd(), folder / WORK / f"{name}.log"
+    if not how.slurm:
+        return f"cd {shlex.quote(str(here))} && exec {line} > {shlex.quote(str(log))} 2>&1"
+    submit = ["sbatch", "--wait", "--quiet", f"--job-name={job_name(folder)}", f"--comment={name}"]
+    submit += [f"--cpus-per-task={how.threads}", f"--mem={how.memory}", f"--time={how.minutes}"]
+    return shlex.join([*submit, f"--chdir={here}", f"--output={log}", f"--wrap=exec {line}"])
 
 
 def _round(folder, cases, left, how):
@@ -142,19 +108,18 @@ def _round(folder, cases, left, how):
     work = folder / WORK
     for name in (".snakemake", "done"):  # of an earlier round: the cases' folders tell what is done
         shutil.rmtree(work / name, ignore_errors=True)
-    commands = {name: how.command(folder, name, cases[name]) for name in left}
     threads = 1 if how.slurm else how.threads
+    commands = {name: _command(folder, name, cases[name], how) for name in left}
     write_json(work / "jobs.json", {"threads": threads, "commands": commands})
-    cores = min(how.cores, threads * len(left))
     command = ["snakemake", f"--snakefile={SNAKEFILE}", f"--configfile={work / 'jobs.json'}"]
-    command += [f"--directory={work}", f"--cores={cores}", "--keep-going", "--nolock", "--nocolor"]
-    command += ["--scheduler=greedy"]
+    command += [f"--directory={work}", f"--cores={min(how.jobs, threads * len(left))}"]
+    command += ["--keep-going", "--nolock", "--nocolor", "--scheduler=greedy"]
     if not shutil.which(command[0]):
         raise RuntimeError("Snakemake is missing: apt-get install snakemake")
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "Agg", **mark(folder)}
     environment.pop("OMP_NUM_THREADS", None)
     progress = _CaseProgress(folder, cases)
-    with open(work / LOG, "wb") as log:
+    with open(work / "snakemake.log", "wb") as log:
         snakemake = subprocess.Popen(
             command,
             env=environment,
@@ -173,31 +138,23 @@ def _round(folder, cases, left, how):
                 snakemake.wait()
     progress.close()
     if snakemake.returncode > 0:
-        _check(work / LOG, snakemake.returncode)
+        _check(work / "snakemake.log", snakemake.returncode)
 
 
 def _check(log, status):
     """RuntimeError, with its own words, if Snakemake has failed, and not a case."""
-    said = _lines(log)
+    said = [line for line in _lines(log) if not line.startswith(("Complete log", "Shutting down"))]
     if not any(line.startswith("Error in rule case:") for line in said):
-        words = [line for line in said if not line.startswith(("Complete log", "Shutting down"))]
-        last = words[-1] if words else "without a word"
+        last = said[-1] if said else "without a word"
         raise RuntimeError(f"Snakemake ended by {status}: {last}; all that it said is in {log}")
 
 
 def _lines(path):
-    """Lines of a text file that are not empty."""
+    """Lines of a text file that are not empty; none if there is no file."""
+    if not path.exists():
+        return []
     text = path.read_text(encoding="utf-8", errors="replace")
     return [line.strip() for line in text.splitlines() if line.strip()]
-
-
-def _last_words(folder, name):
-    """What a job said last that was stopped, for the user; "" if nothing."""
-    try:
-        said = [line for line in _lines(folder / WORK / f"{name}.log") if " %  " not in line]
-    except FileNotFoundError:
-        return ""
-    return f"; it said last: {said[-1]}" if said else ""
 
 
 class _CaseProgress:
@@ -212,18 +169,13 @@ class _CaseProgress:
         """Look at the cases that were not done and show how far all are."""
         if len(self.done) == len(self.cases):
             return
-        share, running = 0.0, 0
-        for name in self.cases.keys() - self.done:
-            status = look(self.folder / name)
-            if status.is_finished:
-                self.done.add(name)
-            elif status.state == RUNNING:
-                running += 1
-                share += _share(self.folder / name, self.cases[name].duration)
-        share = (share + len(self.done)) / len(self.cases)
-        if self.first is None:
-            self.first = share
-        text = f"{len(self.done)} of {len(self.cases)} cases done, {running} running"
+        now = {name: look(self.folder / name) for name in self.cases.keys() - self.done}
+        self.done |= {name for name, status in now.items() if status.is_finished}
+        running = [name for name, status in now.items() if status.state == RUNNING]
+        shares = (_share(self.folder / name, self.cases[name].duration) for name in running)
+        share = (sum(shares) + len(self.done)) / len(self.cases)
+        self.first = share if self.first is None else self.first
+        text = f"{len(self.done)} of {len(self.cases)} cases done, {len(running)} running"
         gone = share - self.first
         if gone > 0 and share < 1:
             text += f", {(time.monotonic() - self.start) * (1 - share) / gone:.0f} s left"

@@ -14,7 +14,7 @@ from membrane.run.sails import SAILS
 from .grid import MAPS, PAGE, RESULTS, TABLE, picture_of, refuse_other_results
 from .page import render
 from .pictures import Axes, plot_curves, plot_maps, three_digits
-from .results import measured, outcomes, read, unit_of, values, varied, write_table
+from .results import measured, outcomes, read, values, varied, write_table
 
 MAPPED = 4  # outcomes that have heat maps
 NOT_SEEN = "not seen"  # where a run ends before what is asked for
@@ -54,8 +54,7 @@ def draw(cases: list[Status], folder: Path) -> dict[str, str]:
     placed = {values(case, names): case for case in cases}
     if not names or len(placed) < len(cases) or None in {v for place in placed for v in place}:
         return {}
-    about = _fields(cases)
-    axes = Axes(names, [about[name]["unit"] if name in about else "-" for name in names])
+    axes = Axes(names, _units(cases))
     return {**_draw_curves(placed, axes, folder), **_draw_maps(placed, axes, folder)}
 
 
@@ -85,7 +84,7 @@ def _draw_maps(placed, axes, folder):
         return {}
     told = outcomes(list(placed.values()))[:MAPPED]
     maps = {
-        f"{_words(o.name)} [{unit_of(o)[0]}]": {
+        f"{_words(o.name)} [{o.form.unit}]": {
             place: measured(case, o) for place, case in placed.items()
         }
         for o in told
@@ -116,18 +115,23 @@ def _fields(cases):
     return {item.name: item.metadata for kind in kinds for item in fields(kind)}
 
 
+def _units(cases):
+    """Units of what varies."""
+    about = _fields(cases)
+    return [about[name]["unit"] if name in about else "-" for name in varied(cases)]
+
+
 def content(cases: list[Status], drawn: dict[str, str], folder: Path) -> dict:
     """What the page shows, ready for its template."""
     names, told, about = varied(cases), outcomes(cases), _fields(cases)
     known: dict = next((case.parameters for case in cases if case.parameters), {})
     states = [case.state for case in cases]
-    units = [about[name]["unit"] if name in about else "-" for name in names]
     return {
         "states": {state: states.count(state) for state in dict.fromkeys(states)},
         "pictures": drawn,
         "columns": [
-            *((name, unit, "") for name, unit in zip(names, units)),
-            *((o.name, unit_of(o)[0], o.label) for o in told),
+            *((name, unit, "") for name, unit in zip(names, _units(cases))),
+            *((o.name, o.form.unit, o.label) for o in told),
         ],
         "cases": [_row(case, names, told, folder) for case in cases],
         "others": [case for case in cases if case.state != COMPLETE],

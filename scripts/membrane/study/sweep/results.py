@@ -4,7 +4,6 @@
 import csv
 import io
 from pathlib import Path
-from typing import Any
 
 from membrane.files import replace_text
 from membrane.measures import EVERY_OUTCOME, LEDGER_OUTCOMES, Outcome
@@ -57,22 +56,14 @@ def outcomes(cases: list[Status]) -> list[Outcome]:
     known = {o.name: o for o in EVERY_OUTCOME}
     names = [n for n in known if n in told] + [n for n in told if n not in known]
     ledger = {o.name for o in LEDGER_OUTCOMES}
-    return [
-        known.get(n, Outcome(n, "-", n.replace("_", " "), lambda history: None))
-        for n in names
-        if n not in ledger
-    ]
-
-
-def unit_of(outcome: Outcome) -> tuple[str, float]:
-    """The unit that is shown, and its factor from SI."""
-    return outcome.shown or (outcome.unit, 1.0)
+    others = {n: Outcome(n, "-", n.replace("_", " "), lambda history: None) for n in names}
+    return [{**others, **known}[n] for n in names if n not in ledger]
 
 
 def measured(case: Status, outcome: Outcome) -> float | None:
     """An outcome of a case in the unit that is shown; None if there is none."""
     value = case.measures.get(outcome.name)
-    return None if value is None else unit_of(outcome)[1] * value
+    return None if value is None else outcome.form.factor * value
 
 
 def write_table(cases: list[Status], path: Path) -> None:
@@ -84,16 +75,11 @@ def write_table(cases: list[Status], path: Path) -> None:
     for case in cases:
         found = (measured(case, outcome) for outcome in told)
         cells = [case.name, *values(case, names), case.state, case.time, *found, case.reason]
-        rows.writerow([_plain(cell) for cell in cells])
+        rows.writerow(["" if cell is None else text(cell) for cell in cells])
     replace_text(path, stream.getvalue())
 
 
 def _column(outcome):
     """Name of an outcome's column."""
-    unit = unit_of(outcome)[0].replace(" ", "_")
+    unit = outcome.form.unit.replace(" ", "_")
     return outcome.name if unit == "-" else f"{outcome.name}_{unit}"
-
-
-def _plain(value: Any) -> str:
-    """A value as it goes into the table."""
-    return "" if value is None else text(value)
