@@ -296,8 +296,8 @@ class TestErrors(unittest.TestCase):
             said, end = self.ends(lambda: SailParameters(beta=-1), debug)
             self.assertEqual((said, end), ("", "fold: beta = -1 must be >= 0"))
             said, end = self.ends(lambda: Membrane(nodes=[(0, 0, 0)]), debug)
-            self.assertRegex(end, "^fold: Membrane: material is missing")
-            said, end = self.ends(lambda: open("/nowhere/at/all"), debug)
+            self.assertRegex(end, "^fold: Membrane: nodes.0. has mass 0 kg")
+            said, end = self.ends(lambda: Path("/nowhere/at/all").read_bytes(), debug)
             self.assertRegex(end, "^fold: .*No such file")
 
     def test_its_traceback_is_shown_to_those_who_ask(self):

@@ -360,7 +360,7 @@ class TestChangesByHand(FusedTest):
             made.ledger.dead = False
             scene.advance(30)
 
-        options = {"gravity": GRAVITY, **ALL, "energy_tolerance": None, **options}
+        options = {"gravity": GRAVITY, **ALL, "energy_tolerance": 0, **options}
         untouched = self.both(lambda made: scene.advance(90), **options)
         changed = self.both(act, **options)
         self.assertGreater(np.abs(changed[0] - untouched[0]).max(), 1e-8, "nothing has changed")
@@ -606,7 +606,7 @@ class TestErrors(FusedTest):
         with self.refused("path = 'fast' must be one of law2, fused", ValueError):
             set_engines(net, path="fast")
         for period in (0, -3):
-            with self.refused(f"exchangePeriod = {period} must be > 0", ValueError):
+            with self.refused(f"exchange_period = {period} must be >= 1", ValueError):
                 set_engines(net, path="fused", exchange_period=period)
         O.engines = [membrane.MembraneIntegrator()]
         with self.refused("membrane is not set"):

@@ -11,7 +11,7 @@ from pathlib import Path
 from . import _layout
 
 PRECISION = "PrecisionDouble"
-VERSION = "0.1.0"
+VERSION = "0.2.0"
 CLASSES = (
     "MembraneMat",
     "Membrane",
