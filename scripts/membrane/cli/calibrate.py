@@ -177,8 +177,8 @@ def write_runs(path: Path, simulate: Deployments, names: list[str], target: Any)
     pairs = zip(simulate.points, simulate.curves)
     rows = [[*np.exp(point), misfit(curves, target)] for point, curves in pairs]
     header = ",".join([*names, "misfit"])
-    form = {"delimiter": ",", "fmt": "%.6g", "comments": "", "encoding": "utf-8"}
-    np.savetxt(path, rows, header=header, **form)
+    form = {"delimiter": ",", "fmt": "%.6g", "comments": ""}
+    np.savetxt(path, rows, header=header, encoding="utf-8", **form)
 
 
 def teller(names: list[str], target: Any, say: Callable[[str], None]) -> Callable:
