@@ -279,8 +279,9 @@ measure_coverage() {
     local folder=$build/coverage
     rm -rf "$folder"
     mkdir -p "$folder/start"
-    # Python imports a module of this name when it starts; sitecustomize is for a test.
-    echo "import coverage; coverage.process_startup()" >"$folder/start/usercustomize.py"
+    # Python imports a module of this name when it starts; sitecustomize is for a test. Another test locks the folder.
+    printf '%s\n' "import os, coverage" "if os.access('$folder', os.W_OK): coverage.process_startup()" \
+        >"$folder/start/usercustomize.py"
     export COVERAGE_PROCESS_START=$root/pyproject.toml COVERAGE_FILE=$folder/data PYTHONPATH=$folder/start${PYTHONPATH:+:$PYTHONPATH}
     launch=(env)
     trap report_coverage EXIT
