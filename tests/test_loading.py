@@ -126,7 +126,7 @@ class TestLayout(unittest.TestCase):
         subprocess.run([*command, *linked, "-o", module], check=True)
         done = imported(package("other_layout", module.read_bytes()))
         self.assertNotEqual(done.returncode, 0)
-        said = "otherwise than Debian's: NewtonIntegrator.mask was set to 40 but reads as"
+        said = "differently from Debian's: NewtonIntegrator.mask was set to 40 but reads as"
         self.assertIn(said, done.stderr)
 
     def test_writing_through_wrong_offsets_is_refused(self):
