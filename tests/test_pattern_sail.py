@@ -109,6 +109,8 @@ class TestFlight(SceneTest):
         content = read_fold(folder / "sail.fold")
         flat, start, *_ = content.frames
         self.assertEqual(len(content.frames), 4)
+        later = json.loads((folder / "sail.fold").read_text())["file_frames"]
+        self.assertEqual([frame["frame_unit"] for frame in later], ["m"] * 3)  # as not all inherit
         self.assertEqual(flat.custom["membrane:material"]["young"], p.young)
         added = np.array(flat.custom["vertices_membrane:pointMass"])
         self.assertEqual(np.flatnonzero(added).tolist(), sorted(summary["mesh"]["tips"]))

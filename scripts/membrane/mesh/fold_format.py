@@ -466,7 +466,8 @@ def _child(found, frame, first, key_frame):
     """A later frame as an object of JSON (`found`), without what it shares with the key frame."""
     if not found.keys() >= first.keys():
         return found  # it would inherit what it does not have
-    shared = {k for name, k in KEYS.items() if getattr(frame, name) is getattr(key_frame, name)}
+    lists = {name: key for name, key in KEYS.items() if not key.startswith("frame_")}
+    shared = {k for name, k in lists.items() if getattr(frame, name) is getattr(key_frame, name)}
     shared |= {k for k, value in frame.custom.items() if value is key_frame.custom.get(k)}
     own = {key: value for key, value in found.items() if key not in shared}
     return {"frame_parent": 0, "frame_inherit": True, **own}
