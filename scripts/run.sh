@@ -447,6 +447,12 @@ package() {
     say "made $(compgen -G "$build/package/*.deb")"
 }
 
+# Installs what it takes to mesh a sail, if the options of a command name a pattern, a mesh or the Miura-ori sheet.
+need_for_sail() {
+    [[ $command =~ ^(sail|miura)$ || " $* " =~ \ miura\ |\.(fold|msh)\  ]] || return 0
+    need "${sail_packages[@]}"
+}
+
 take_nothing() { (($# == 0)) || die "$command: unknown option '$1'"; }
 
 command=${1-help}
@@ -455,23 +461,19 @@ shift || true
     die "unknown command '$command', or one for the folder of the sources only; yade-membrane help lists those there are"
 [[ -n $installed ]] || run_elsewhere "$@"
 case $command in
-deploy)
+deploy | sail | miura | ikaros | case)
+    need_for_sail "$@"
     compile
     viewer_if_possible
     [[ " $* " != *" --animation "* ]] || need "${animation_packages[@]}"
-    run_yade "$root/scripts/deploy.py" "$@"
-    ;;
-sail | miura)
-    need "${sail_packages[@]}"
-    compile
-    viewer_if_possible
     run_yade "$root/scripts/$command.py" "$@"
     ;;
 watch)
     [[ -n ${DISPLAY-} ]] || die "watch needs a display, and DISPLAY is not set"
+    need_for_sail "$@"
     compile
     no_display=()
-    run_yade "$root/scripts/deploy.py" --watch "$@"
+    run_yade "$root/scripts/deploy.py" "$@" --watch
     ;;
 test)
     need "${sail_packages[@]}" "${sweep_packages[@]}" "${calibrate_packages[@]}" "${test_packages[@]}"
@@ -506,16 +508,12 @@ probe)
     run_yade "$root/scripts/probe.py" "$@"
     ;;
 sweep)
+    need_for_sail "$@"
     need "${sweep_packages[@]}"
     compile
     viewer_if_possible
     set_environment
     exec python3 "$root/scripts/sweep.py" "$@"
-    ;;
-case)
-    compile
-    viewer_if_possible
-    run_yade "$root/scripts/case.py" "$@"
     ;;
 disk | stability | parts | chart)
     compile
@@ -543,12 +541,8 @@ animate)
     compile
     run_yade "$root/scripts/animate.py" "$@"
     ;;
-ikaros)
-    compile
-    viewer_if_possible
-    run_yade "$root/scripts/ikaros.py" "$@"
-    ;;
 calibrate)
+    need_for_sail "$@"
     need "${calibrate_packages[@]}"
     compile
     set_environment

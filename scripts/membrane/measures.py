@@ -378,8 +378,13 @@ def _crease_energy(at):
     return at.ledger.crease  # computed at each call
 
 
+def moment_of_inertia(masses: np.ndarray, positions: np.ndarray) -> float:
+    """Of masses (N,) [kg] at positions (N, 3) [m] about z [kg m2]."""
+    return float(np.sum(masses * np.sum(positions[:, :2] ** 2, axis=1)))
+
+
 def _hub_inertia(at):
-    return at.hub.inertia + float(np.sum(at.masses * np.sum(at.x[:, :2] ** 2, axis=1)))
+    return at.hub.inertia + moment_of_inertia(at.masses, at.x)
 
 
 HUB = (

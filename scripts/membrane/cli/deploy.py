@@ -22,7 +22,7 @@ from ..view import window
 from .batch import batch_row, batch_sail, folder_of
 from .options import add_out, chosen_sail, from_arguments, parse, sails_text
 
-PLACES = {"square": "", "sheet": ""}  # below out/, unless called as the kind of sail
+PLACES = {"square": "", "sheet": ""}  # below out/; of other kinds their names
 STAGES = {"spin_up": "spin-up", "run": "run", "pictures": "pictures"}
 
 
@@ -45,7 +45,8 @@ def command_line(kind: Any, words: list[str]) -> argparse.Namespace:
 
 def main(sail: str = "square") -> None:
     """Deploy a sail, by default of some kind; sys.exit with one sentence if that cannot be."""
-    words = [batch_sail(), *sys.argv[1:]] if batch_sail() else sys.argv[1:]
+    column = batch_sail()
+    words = [*([column] if column else []), *sys.argv[1:]]
     kind, words = chosen_sail(words, sail)
     overrides, case = batch_row(kind)
     arguments = command_line(kind, words)

@@ -66,8 +66,6 @@ def build(p: RunParameters, sail: Sail | None = None) -> tuple[Sail, scene.Membr
     kind = SAILS[p.sail]
     sail = sail or kind.sail(p)
     mesh = sail.mesh
-    masses = np.zeros(len(mesh.nodes))
-    masses[sail.tips] = sail.tip_mass
     try:
         membrane = scene.add_membrane(
             mesh.nodes,
@@ -77,7 +75,7 @@ def build(p: RunParameters, sail: Sail | None = None) -> tuple[Sail, scene.Membr
             sail.cables,
             positions=sail.start,
             material=scene.film(**attributes("MembraneMat", p)),
-            pointMasses=masses.tolist(),
+            pointMasses=sail.point_masses.tolist(),
             interactions=p.path == "law2",
             **({"radius": p.tether_radius} if isinstance(p, Tethers) else {}),
             **attributes("Membrane", p),

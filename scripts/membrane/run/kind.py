@@ -52,6 +52,13 @@ class Sail:
     doubts: Sequence[str] = ()
     words: str = ""
 
+    @property
+    def point_masses(self) -> np.ndarray:
+        """Masses (N,) [kg] of the tips at the nodes, without the film."""
+        masses = np.zeros(len(self.start))
+        masses[self.tips] = self.tip_mass
+        return masses
+
 
 @dataclass(frozen=True, eq=False)
 class FinishedSail:

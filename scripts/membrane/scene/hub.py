@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from yade import wrapper as yade
 
+from ..measures import moment_of_inertia
+
 
 def add(forces: Any, bodies: Sequence[int], spool: Any, inertia: float, omega: float) -> Any:
     """Engine of a free hub.
@@ -35,8 +37,7 @@ def add(forces: Any, bodies: Sequence[int], spool: Any, inertia: float, omega: f
 
 def inertia(sail: Any, positions: np.ndarray) -> float:
     """Moment of inertia about z [kg m2] of a free hub and its membrane, nodes at (N, 3) [m]."""
-    r2 = np.sum(np.asarray(positions)[:, :2] ** 2, axis=1)
-    return sail.hub.inertia + float(np.sum(sail.masses() * r2))
+    return sail.hub.inertia + moment_of_inertia(sail.masses(), np.asarray(positions))
 
 
 def release(hub: Any, omega: float, forces: np.ndarray) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..files import BadFile, replace_text
 from ..geometry import crease_angles
-from ..measures import EVERY, in_plots, table
+from ..measures import EVERY, MILLIJOULES, in_plots, table
 from ..results import own
 from ..results.finished_run import read_run
 from ..results.output import read_frame
@@ -33,8 +33,6 @@ FIELDS = (
     ("buckled", "buckled sides", "%", 100.0, "share of a triangle's sides"),
     ("crease_angle", "crease angle", "deg", 180 / np.pi, "0 folded, 180 flat or no fold line"),
 )
-
-MILLI = {"J": ("mJ", 1e3)}  # units for what stays below 1
 
 
 class NoViewer(RuntimeError):
@@ -176,8 +174,8 @@ def _curves(history):
 
     curves = []
     for title, unit, factor, lines in in_plots(EVERY, history):
-        if unit in MILLI and max(np.abs(history[m.name]).max() for m in lines) < 1:
-            unit, factor = MILLI[unit]
+        if unit == "J" and max(np.abs(history[m.name]).max() for m in lines) < 1:
+            unit, factor = MILLIJOULES
         drawn = [
             {"label": m.label, "minor": m.minor, "values": shorten(factor * history[m.name])}
             for m in lines

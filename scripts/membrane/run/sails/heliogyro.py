@@ -11,12 +11,12 @@ from math import cos, pi, radians, sin
 
 import numpy as np
 
-from ...measures import SHEET, SHEET_OUTCOMES, in_plots
+from ...measures import SHEET, SHEET_OUTCOMES
 from ...mesh import sheet_mesh
 from ...mesh.pattern_mesh import SheetMesh
 from ...parameters import ASSUMED, RUN, RunParameters, changed, parameter, with_defaults
-from ...view import plots
 from ..kind import FinishedSail, Kind, Sail
+from .sheet import draw_sheet, while_it_opens
 
 
 @dataclass(frozen=True)
@@ -101,13 +101,8 @@ class Heliogyro(Kind[HeliogyroParameters]):
         return Sail(mesh, starts, mesh.groups["tips"], p.tip_mass, hub=roots)
 
     def draw(self, run: FinishedSail) -> None:
-        """history.png, and shapes.png up to the widest shape."""
-        columns = in_plots(self.measures, run.history)
-        plots.plot_history(run.history, columns, run.folder / "history.png")
-        rates = np.interp(run.times, run.history["time"], run.history["projected_area"])
-        frames, times = run.show(run.until(int(np.argmax(rates))))
-        mesh, picture = run.sail.mesh, run.folder / "shapes.png"
-        plots.plot_sheets(frames, mesh.triangles, run.sail.tips, picture, times)
+        """history.png and shapes.png."""
+        draw_sheet(run, while_it_opens(run))
 
 
 KIND = Heliogyro()

@@ -128,7 +128,7 @@ class Ikaros(Square[IkarosParameters]):
             figure.text(left + 1 / 6, bottom + 0.28, f"{time:.0f} s", ha="center", fontsize=11)
         axes = figure.add_axes((0.07, 0.075, 0.9, 0.3))
         self._draw_spin(axes, run.history)
-        figure.savefig(run.folder / "ikaros.png", dpi=plots.DPI)
+        plots.save(figure, run.folder / "ikaros.png")
 
     def _draw_spin(self, axes, history):
         time = history["time"]

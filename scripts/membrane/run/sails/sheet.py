@@ -14,8 +14,7 @@ import numpy as np
 
 from ...measures import SHEET as MEASURES
 from ...measures import SHEET_OUTCOMES, in_plots
-from ...geometry import area_vectors, crossings
-from ...mesh import tip_masses
+from ...geometry import crossings
 from ...mesh.fold_format import read_fold
 from ...mesh.msh import read_msh
 from ...mesh.pattern_mesh import default_size, mesh_pattern
@@ -101,26 +100,19 @@ class AnySheet(Kind[PatternParameters]):
             warn(doubt)
 
     def draw(self, run: FinishedSail) -> None:
-        """history.png, and shapes.png up to the widest shape, or of all of the run."""
-        columns = in_plots(self.measures, run.history)
-        plots.plot_history(run.history, columns, run.folder / "history.png")
-        frames, times = run.show(self.instants(run))
-        mesh = run.sail.mesh
-        plots.plot_sheets(frames, mesh.triangles, mesh.tips, run.folder / "shapes.png", times)
+        """history.png and shapes.png."""
+        draw_sheet(run, self.instants(run))
 
     def instants(self, run: FinishedSail) -> Sequence[float] | np.ndarray:
         """When shapes are shown [s]."""
-        areas = [area_vectors(x, run.sail.mesh.triangles)[:, 2].sum() for x in run.frames]
-        widest = int(np.argmax(areas))
-        # A sheet that starts flat is widest at the start: then all of the run is shown.
-        return run.until(widest if areas[widest] > 1.01 * areas[0] else -1)
+        return while_it_opens(run)
 
     def leave(self, run: FinishedSail) -> dict:
         """sail.fold; how often layers cross at the end."""
         mesh, p = run.sail.mesh, run.parameters
         custom = {
             "membrane:material": attributes("MembraneMat", p),
-            "vertices_membrane:pointMass": tip_masses(mesh, run.sail.tip_mass).tolist(),
+            "vertices_membrane:pointMass": run.sail.point_masses.tolist(),
             "vertices_membrane:mass": run.built.masses().tolist(),
         }
         write_series(run.folder / "sail.fold", mesh, run.times.tolist(), run.frames, custom)
@@ -128,6 +120,23 @@ class AnySheet(Kind[PatternParameters]):
         if crossed:
             warn(f"layers cross at the end: {crossed} times a side passes through a triangle")
         return {"final_crossings": crossed}
+
+
+def draw_sheet(run: FinishedSail, instants: Sequence[float] | np.ndarray) -> None:
+    """Draw history.png, and shapes.png at some instants [s], of a sail that SHEET measures."""
+    columns = in_plots(MEASURES, run.history)
+    plots.plot_history(run.history, columns, run.folder / "history.png")
+    frames, times = run.show(instants)
+    triangles, tips = run.sail.mesh.triangles, run.sail.tips
+    plots.plot_sheets(frames, triangles, tips, run.folder / "shapes.png", times)
+
+
+def while_it_opens(run: FinishedSail) -> np.ndarray:
+    """Instants [s] up to the widest shape, or of all of the run."""
+    areas = np.interp(run.times, run.history["time"], run.history["projected_area"])
+    widest = int(np.argmax(areas))
+    # A sheet that starts flat is widest at the start: then all of the run is shown.
+    return run.until(widest if areas[widest] > 1.01 * areas[0] else -1)
 
 
 def sail_of(sheet: Any, p: PatternParameters) -> Sail:
