@@ -31,14 +31,11 @@ void findEnergy(EnergyTracker& energies, const string& name, int& index) {
     __atomic_store_n(&index, found, __ATOMIC_RELEASE);
 }
 
-/// Whether the nodes of a side move and no engine of their membrane looks at what they do.
-bool movesUnwatched(const Interaction& link, const Scene& scene) {
+/// Whether the membrane of a side has no engine that looks at what its nodes do.
+bool isUnwatched(const Interaction& link, const Scene& scene) {
     const shared_ptr<Body> body = bodyAt(scene, link.getId1());
     const MembraneNode* const node = body ? exactly<MembraneNode>(body->shape) : nullptr;
-    if (node && MembraneForceEngine::of(node->membrane.get(), scene)) return false;
-    return std::any_of(scene.engines.begin(), scene.engines.end(), [](const shared_ptr<Engine>& engine) {
-        return !engine->dead && dynamic_cast<const NewtonIntegrator*>(engine.get());
-    });
+    return !(node && MembraneForceEngine::of(node->membrane.get(), scene));
 }
 
 } // namespace
@@ -58,8 +55,8 @@ bool Law2_MembraneGeom_MembranePhys_Buckling::go(shared_ptr<IGeom>& geomBase, sh
                      ", not by a MembraneGeom and a MembranePhys");
     if (!(phys->restLength > 0.)) return fault("interact but are no side of the membrane");
     if (!std::isfinite(geom->length)) return fault("are " + std::to_string(geom->length) + " m apart");
-    if (phys->computed >= 0 && phys->computed == scene->iter - 1 && phys->checked != phys->computed &&
-        movesUnwatched(*link, *scene))
+    if (phys->computed >= 0 && phys->computed == scene->iter - 1 && phys->checked != phys->computed && bodiesMove() &&
+        isUnwatched(*link, *scene))
         return fault("are a side that moves without a MembraneForceEngine of its membrane: put one into O.engines, "
                      "after InteractionLoop, and let it not be dead");
 
@@ -76,6 +73,18 @@ bool Law2_MembraneGeom_MembranePhys_Buckling::go(shared_ptr<IGeom>& geomBase, sh
                            energyIndex, /*reset in every step*/ true);
     }
     return true;
+}
+
+/// Whether a NewtonIntegrator lives in this step: looked up once, not for each side.
+bool Law2_MembraneGeom_MembranePhys_Buckling::bodiesMove() {
+    const long step = scene->iter;
+    const long known = __atomic_load_n(&lookedUp_, __ATOMIC_RELAXED);
+    if (known / 2 == step + 1) return known % 2 != 0;
+    const bool found = std::any_of(scene->engines.begin(), scene->engines.end(), [](const shared_ptr<Engine>& engine) {
+        return !engine->dead && dynamic_cast<const NewtonIntegrator*>(engine.get());
+    });
+    __atomic_store_n(&lookedUp_, 2 * (step + 1) + (found ? 1 : 0), __ATOMIC_RELAXED);
+    return found;
 }
 
 Real Law2_MembraneGeom_MembranePhys_Buckling::elasticEnergy() const {

@@ -21,6 +21,11 @@ public:
         .def("elasticEnergy", &Guarded<&Law2_MembraneGeom_MembranePhys_Buckling::elasticEnergy>::call, "Strain energy [J] of all sides in the scene.")
     );
     // clang-format on
+
+private:
+    long lookedUp_ = 0; ///< 2 (step + 1) of the last look, + 1 if bodies moved
+
+    bool bodiesMove();
 };
 REGISTER_SERIALIZABLE(Law2_MembraneGeom_MembranePhys_Buckling);
 
