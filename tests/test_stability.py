@@ -4,7 +4,7 @@
 import unittest
 
 import numpy as np
-from membrane.study.stability import creases, drag, negative_stiffness, timestep
+from membrane.study.stability import beyond, creases, drag, negative_stiffness, timestep
 from membrane.study.stability.common import bisect, grows
 from support import O, SceneTest, Sheet, grid
 
@@ -60,9 +60,9 @@ class TestCreases(SceneTest):
         self.assertGreater(creases.collapse("current", 30.0, heights).min(), 50)
 
     def test_paper_law_jumps_where_the_natural_angle_is_not_0_and_the_other_does_not(self):
-        below, above = creases.law_curve("paper", 1.0, np.array([-1e-9, 1e-9]))
+        below, above = creases.force_and_energy("paper", 1.0, np.array([-1e-9, 1e-9]))[0]
         self.assertAlmostEqual(below / above, 100, places=3)
-        below, above = creases.law_curve("conservative", 1.0, np.array([-1e-9, 1e-9]))
+        below, above = creases.force_and_energy("conservative", 1.0, np.array([-1e-9, 1e-9]))[0]
         self.assertAlmostEqual(below / above, 1, places=3)
 
     def test_unequal_heights_gain_spin_from_the_paper_law_only(self):
@@ -83,6 +83,15 @@ class TestDrag(SceneTest):
 
     def test_at_1_atmosphere_the_papers_step_is_far_below_the_limit(self):
         self.assertLess(drag.PAPER_STEP, 1e-2 * drag.limit(drag.ATMOSPHERE, drag.TIP_SPEED))
+
+
+class TestBeyond(SceneTest):
+    def test_step_above_the_limit_is_refused_and_stopped_soonest_by_the_watch(self):
+        row, refused = beyond.blow_up(2.0, 500)
+        self.assertIn("the critical time step", refused)
+        _, _, grown, stop, _, _, _, watched, _ = row
+        self.assertGreater(stop, 0)
+        self.assertTrue(0 < watched < grown + stop)
 
 
 class TestBuckled(SceneTest):

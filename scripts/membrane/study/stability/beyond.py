@@ -9,24 +9,19 @@ undamped mode above its limit grows by a factor a step, b + sqrt(b² - 1) with b
 1, until numbers overflow at 1e308.
 """
 
-from pathlib import Path
+from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 from membrane import scene
 from membrane.mesh import sail_mesh
 
-from .common import Model, O, figure, folder, save, write_table
+from .common import Model, O, figure, publish
 
 HEADER = (
-    "step / estimate [-]",
-    "refused unless forced",
-    "steps to a million times the energy",
-    "steps from there to the stop",
-    "predicted steps to the stop, taut",
-    "largest velocity seen [m/s]",
-    "message",
-    "steps to the stop by the watch",
-    "message of the watch",
+    "step / estimate [-]; refused unless forced; steps to a million times the energy; "
+    "steps from there to the stop; predicted steps to the stop, taut; "
+    "largest velocity seen [m/s]; message; steps to the stop by the watch; message of the watch"
 )
 SPEED = 1e-6  # m/s
 TOLERANCE = 0.1  # of the watch, its default
@@ -51,37 +46,27 @@ def refusal(model: Model, step: float) -> str:
     return ""
 
 
-def film(zeta: float, tolerance: float | None = None) -> Model:
-    """The flat film with a tiny perturbation; with a `tolerance` it is watched."""
-    mesh = sail_mesh()
-    size = mesh.film_size
-    engine = {"zeta": zeta, "energy_tolerance": tolerance}
-    model = Model(mesh.nodes[:size], mesh.triangles, engine=engine)
-    model.ledger.dead = tolerance is None
-    rng = np.random.default_rng(4)
-    model.place(model.rest, SPEED * rng.normal(size=model.rest.shape))
+def film(tolerance: float = 0.0) -> Model:
+    """The flat film with a tiny perturbation; with a `tolerance` > 0 it is watched."""
+    mesh, engine = sail_mesh(), {"zeta": 0.0, "energy_tolerance": tolerance}
+    model = Model(mesh.nodes[: mesh.film_size], mesh.triangles, engine=engine)
+    model.ledger.dead = tolerance == 0
+    noise = np.random.default_rng(4).normal(size=model.rest.shape)
+    model.place(model.rest, SPEED * noise)
     return model
 
 
-def blow_up(share: float, zeta: float, most: int) -> tuple[list, str]:
+def blow_up(share: float, most: int) -> tuple[list, str]:
     """Row of a run at `share` of the estimate, of at most `most` steps; who refuses it unforced."""
-    model = film(zeta)
+    model = film()
     step = share * model.forces.criticalTimeStep()
     refused = refusal(model, step)
-    done, grown, fastest, message = forced_run(film(zeta), step, most)
-    watched, said = watched_stop(film(zeta, TOLERANCE), step, most)
-    row = [
-        share,
-        int(bool(refused)),
-        grown,
-        done - grown if message and grown >= 0 else -1,
-        predicted(share) if share > 1.01 else np.inf,
-        fastest,
-        message or "not stopped",
-        watched,
-        said,
-    ]
-    return row, refused
+    done, grown, fastest, message = forced_run(film(), step, most)
+    stop = done - grown if message and grown >= 0 else -1
+    expected = predicted(share) if share > 1.01 else np.inf
+    watch = watched_stop(film(TOLERANCE), step, most)
+    about = share, int(bool(refused)), grown, stop, expected, fastest, message or "not stopped"
+    return [*about, *watch], refused
 
 
 def forced_run(model: Model, step: float, most: int) -> tuple[int, int, float, str]:
@@ -117,43 +102,33 @@ def watched_stop(model: Model, step: float, most: int) -> tuple[int, str]:
 
 def run(quick: bool) -> str:
     """Run above the limit; returns a line of text."""
-    rows = []
-    refused = ""
-    for share in (1.1, 2.0) if quick else (0.99, 1.02, 1.05, 1.1, 1.2, 1.5, 2.0, 3.0):
-        row, said = blow_up(share, 0.0, 1500 if quick else 6000)
-        rows.append(row)
-        refused = refused or said
-    out = folder(quick)
-    write_table(out / "beyond.csv", HEADER, rows)
-    draw(rows, out / "beyond.png")
-    stops = ", ".join(f"{r[3]} at {r[0]:g}" if r[3] >= 0 else f"none at {r[0]:g}" for r in rows)
+    shares = (1.1, 2.0) if quick else (0.99, 1.02, 1.05, 1.1, 1.2, 1.5, 2.0, 3.0)
+    rows, said = zip(*(blow_up(share, 1500 if quick else 6000) for share in shares))
+    publish("beyond", quick, HEADER, rows, draw(rows))
+    stops, watched = (
+        ", ".join(f"{r[k] if r[k] >= 0 else 'none'} at {r[0]:g}" for r in rows) for k in (3, 7)
+    )
+    refused = next(filter(None, said), "")
     return (
         f'refused unless forced: {sum(r[1] for r in rows)} of {len(rows)}, with "{refused}"; '
-        f"forced, steps "
-        f"from a millionfold energy to the stop: {stops}; largest velocity before it "
-        f"{max(r[5] for r in rows):.1e} m/s; with a watch, steps to the stop: "
-        + ", ".join(f"{r[7]} at {r[0]:g}" if r[7] >= 0 else f"none at {r[0]:g}" for r in rows)
+        f"forced, steps from a millionfold energy to the stop: {stops}; largest velocity before it "
+        f"{max(r[5] for r in rows):.1e} m/s; with a watch, steps to the stop: {watched}"
     )
 
 
-def draw(rows: list[list], path: Path) -> None:
+def draw(rows: Sequence[list]) -> Figure:
     """Steps to the blow-up and from there to the stop, over the step."""
-    drawing, axes = figure(width=6.0)
-    axis = axes[0, 0]
-    for column, name in ((2, "start to a million times the energy"), (3, "from there to the stop")):
-        mine = [r for r in rows if r[column] >= 0]
-        axis.semilogy([r[0] for r in mine], [r[column] for r in mine], "o-", label=name)
-    mine = [r for r in rows if r[7] >= 0]
-    axis.semilogy([r[0] for r in mine], [r[7] for r in mine], "s-", label="to the watch's stop")
-    mine = [r for r in rows if np.isfinite(r[4])]
-    axis.semilogy(
-        [r[0] for r in mine],
-        [r[4] for r in mine],
-        "k--",
-        label="predicted from start to stop, taut",
-    )
+    drawing, (axis,) = figure(width=6.0)
+    for column, sign, name in (
+        (2, "o-", "start to a million times the energy"),
+        (3, "o-", "from there to the stop"),
+        (7, "s-", "to the watch's stop"),
+        (4, "k--", "predicted from start to stop, taut"),
+    ):
+        points = [(r[0], r[column]) for r in rows if 0 <= r[column] < np.inf]
+        axis.semilogy(*np.reshape(points, (-1, 2)).T, sign, label=name)
     axis.axvline(1.0, color="C3", label="estimate: refused above")
     axis.set(xlabel="step / estimate [-]", ylabel="steps [-]")
     axis.legend(fontsize=7)
     axis.grid(alpha=0.3)
-    save(drawing, path)
+    return drawing

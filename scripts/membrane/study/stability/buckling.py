@@ -12,16 +12,17 @@ buckled.
   that at rest.
 """
 
-from pathlib import Path
+from itertools import product
 
 import numpy as np
+from matplotlib.figure import Figure
 from membrane import scene
 from membrane.parameters import SailParameters
 from membrane.run import driver
 
-from .common import Model, O, figure, folder, grid, save, write_table
+from .common import Model, O, figure, grid, publish
 
-HEADER = ("part", "x", "x means", "step / estimate [-]", "step [s]", "value", "value means")
+HEADER = "part; x; x means; step / estimate [-]; step [s]; value; value means"
 GRAVITY = 9.81
 TETHER, TETHER_EA, TETHER_DENSITY = 0.0478, 200.0, 2e-4  # m, N, kg/m
 FALL, MASS = 0.01, 0.36e-3  # m, kg
@@ -57,16 +58,11 @@ def snaps(share: float, count: int) -> tuple[float, float, int]:
         cableDensity=TETHER_DENSITY,
         gravity=GRAVITY,
     )
-    model.states[0].blockedDOFs = "xyzXYZ"
-    lifted = nodes.copy()
-    lifted[:, 2] *= 1 - FALL / TETHER
-    model.place(lifted)
+    model.sail.hold([0])
+    model.place(nodes * [1, 1, 1 - FALL / TETHER])
     O.dt = share * model.forces.criticalTimeStep()
     ledger = model.start_ledger()
-    ledger.dead = False
-    rising, seen, error = False, 0, 0.0
-    fall = MASS * GRAVITY * FALL
-    end = model.states[4]
+    rising, seen, error, end = False, 0, 0.0, model.states[4]
     for _ in range(int(count * 2.5 * np.sqrt(2 * FALL / GRAVITY) / O.dt)):
         O.step()
         now = end.vel[2] > 0.1 * np.sqrt(2 * GRAVITY * FALL)
@@ -74,7 +70,7 @@ def snaps(share: float, count: int) -> tuple[float, float, int]:
         error = max(error, abs(ledger.total - ledger.initial))
         if seen >= count:
             break
-    return error / fall, O.dt, seen
+    return error / (MASS * GRAVITY * FALL), O.dt, seen
 
 
 def shrunk(factor: float, share: float, seconds: float) -> tuple[float, float, float, float]:
@@ -86,79 +82,70 @@ def shrunk(factor: float, share: float, seconds: float) -> tuple[float, float, f
     model.place(factor * nodes + (tiny if factor else 0.0))
     O.dt = share * model.forces.criticalTimeStep()
     ledger = model.start_ledger()
-    ledger.dead = False
-    largest = 0.0
-    extent = np.linalg.norm(nodes, axis=1).max()
+    extents, rest = [], np.linalg.norm(nodes, axis=1).max()
     try:
         for _ in range(20):
             scene.advance(max(1, int(seconds / O.dt / 20)))
-            largest = max(largest, np.linalg.norm(model.positions(), axis=1).max() / extent)
+            extents.append(np.linalg.norm(model.positions(), axis=1).max() / rest)
     except RuntimeError:
         return np.inf, np.inf, np.inf, O.dt
-    last = np.linalg.norm(model.positions(), axis=1).max() / extent
-    return largest, last, ledger.balance / ledger.initial, O.dt
+    return max(extents), extents[-1], ledger.balance / ledger.initial, O.dt
 
 
 def run(quick: bool) -> str:
     """Measure all parts; returns a line of text."""
     rows: list[list] = []
     alphas = (0.0, 100.0, 1e6) if quick else (0.0, 1.0, 100.0, 1e3, 1e4, 1e5, 1e6)
-    for alpha in alphas:
-        for step in (5e-6,) if quick else (5e-6, 2.5e-6):
-            error, energy, share = early_deployment(alpha, step, 0.002 if quick else 0.02)
-            text = "imbalance / largest kinetic energy [-]"
-            rows.append(["alpha", alpha, "alpha [-]", share, step, error, text])
-            text = "largest kinetic energy [J]"
-            rows.append(["alpha", alpha, "alpha [-]", share, step, energy, text])
+    for alpha, step in product(alphas, (5e-6,) if quick else (5e-6, 2.5e-6)):
+        error, energy, share = early_deployment(alpha, step, 0.002 if quick else 0.02)
+        where = "alpha", alpha, "alpha [-]", share, step
+        rows.append([*where, error, "imbalance / largest kinetic energy [-]"])
+        rows.append([*where, energy, "largest kinetic energy [J]"])
     for share in (0.9, 0.1) if quick else (0.99, 0.9, 0.5, 0.25, 0.1, 0.05):
         error, step, seen = snaps(share, 2 if quick else 20)
-        rows.append(
-            ["snap", seen, "falls caught [-]", share, step, error, "energy error / fall's [-]"]
-        )
+        text = "energy error / fall's [-]"
+        rows.append(["snap", seen, "falls caught [-]", share, step, error, text])
+    texts = "largest extent / rest [-]", "last extent / rest [-]", "imbalance / first energy [-]"
     for factor in (0.5, 0.0) if quick else (0.99, 0.9, 0.5, 0.1, 0.01, 0.0):
-        largest, last, error, step = shrunk(factor, 0.5, 0.005 if quick else 0.1)
-        for value, text in (
-            (largest, "largest extent / rest [-]"),
-            (last, "last extent / rest [-]"),
-            (error, "imbalance / first energy [-]"),
-        ):
+        *values, step = shrunk(factor, 0.5, 0.005 if quick else 0.1)
+        for value, text in zip(values, texts):
             rows.append(["shrunk", factor, "size / rest [-]", 0.5, step, value, text])
-    out = folder(quick)
-    write_table(out / "buckling.csv", HEADER, rows)
-    draw(rows, out / "buckling.png")
-    errors = [r[5] for r in rows if r[0] == "alpha" and r[4] == 5e-6 and "imbalance" in r[6]]
-    falls = {r[3]: r[5] for r in rows if r[0] == "snap"}
-    extents = [r[5] for r in rows if r[6].startswith("largest extent")]
-    ends = [r[5] for r in rows if r[6].startswith("last extent")]
-    listed = ", ".join(f"{e:.1e} at {share:g}" for share, e in falls.items())
+    publish("buckling", quick, HEADER, rows, draw(rows))
+    errors = column(5, rows, "alpha", "imbalance", 5e-6)
+    listed = ", ".join(f"{row[5]:.1e} at {row[3]:g}" for row in rows if row[0] == "snap")
+    extents = column(5, rows, "shrunk", "largest extent")
+    ends = column(5, rows, "shrunk", "last extent")
     return (
-        f"alpha 0 ... 1e6: imbalance {min(errors):.1e} ... {max(errors):.1e} of the kinetic "
-        f"energy at "
-        f"5e-6 s; snapping tether: energy error over a fall's {listed} of the estimate; shrunk "
-        f"sheets "
-        f"stay finite: {'yes' if np.isfinite(extents).all() else 'no'}, extent at the end "
+        f"alpha 0 ... 1e6: imbalance {min(errors):.1e} ... {max(errors):.1e} of the kinetic energy "
+        f"at 5e-6 s; snapping tether: energy error over a fall's {listed} of the estimate; shrunk "
+        f"sheets stay finite: {'yes' if np.isfinite(extents).all() else 'no'}, extent at the end "
         f"{min(ends):.3g} ... {max(ends):.3g} of that at rest"
     )
 
 
-def draw(rows: list[list], path: Path) -> None:
+def column(
+    number: int, rows: list[list], part: str, text: str = "", step: float | None = None
+) -> list[float]:
+    """Values in a column of the rows of a part whose meaning begins with `text`, at a step [s]."""
+    wanted = [r for r in rows if r[0] == part and r[6].startswith(text)]
+    return [row[number] for row in wanted if step in (None, row[4])]
+
+
+def draw(rows: list[list]) -> Figure:
     """Three panels, one a part."""
-    drawing, axes = figure(columns=3, width=4.4)
-    first, second, third = axes[0]
-    for step in sorted({r[4] for r in rows if r[0] == "alpha"}):
-        mine = [r for r in rows if r[0] == "alpha" and r[4] == step and "imbalance" in r[6]]
-        first.plot([r[1] for r in mine], [r[5] for r in mine], "o-", label=f"dt = {step:g} s")
+    drawing, (first, second, third) = figure(columns=3, width=4.4)
+    for step in sorted(set(column(4, rows, "alpha"))):
+        mine = rows, "alpha", "imbalance", step
+        first.plot(column(1, *mine), column(5, *mine), "o-", label=f"dt = {step:g} s")
     first.set_xscale("symlog")
     first.set(xlabel="alpha [-]", ylabel="imbalance / kinetic energy [-]", yscale="log")
-    first.legend(fontsize=7)
-    mine = [r for r in rows if r[0] == "snap"]
-    second.loglog([r[3] for r in mine], [r[5] for r in mine], "o-", label="measured")
+    second.loglog(column(3, rows, "snap"), column(5, rows, "snap"), "o-", label="measured")
     second.axvline(1.0, color="C3", label="estimate")
     second.set(xlabel="step / estimate [-]", ylabel="energy error / energy of a fall [-]")
-    second.legend(fontsize=7)
     for text in ("largest extent", "last extent"):
-        mine = [r for r in rows if r[0] == "shrunk" and r[6].startswith(text)]
-        third.plot([r[1] for r in mine], [r[5] for r in mine], "o-", label=text)
+        values = column(5, rows, "shrunk", text)
+        third.plot(column(1, rows, "shrunk", text), values, "o-", label=text)
     third.set(xlabel="size at the start / rest [-]", ylabel="extent / rest [-]")
-    third.legend(fontsize=7)
-    save(drawing, path)
+    for axis in (first, second, third):
+        axis.legend(fontsize=7)
+    return drawing

@@ -4,11 +4,11 @@
 import csv
 import io
 from collections.abc import Callable, Iterable, Sequence
-from pathlib import Path
 from typing import Any
 
 import membrane as plugin
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from membrane import scene
 from membrane.files import replace_text
@@ -18,23 +18,13 @@ from yade import wrapper as yade
 
 from ..sources import BUILD, REFERENCE
 
-FULL, OTHER = REFERENCE / "stability", BUILD / "stability"
 O = yade.Omega()  # noqa: E741, YADE's own name for it
 
 
 class Model:
-    """A membrane alone in the scene, that may run above its critical step.
+    """A membrane alone in the scene, that may run above its critical step; its ledger is dead.
 
-    Attributes
-    ----------
-    rest : (N, 3) float
-        Rest positions [m].
-    net : Membrane
-    forces : MembraneForceEngine
-    ledger : MembraneLedger
-    states : list of State
-    masses : (N,) float
-        [kg].
+    `rest` (N, 3) are its nodes' rest positions [m], `states` and `masses` (N,) [kg] theirs.
     """
 
     def __init__(
@@ -50,25 +40,23 @@ class Model:
         self.rest = np.array(nodes, dtype=float)
         self.net = scene.add_membrane(self.rest, triangles, **options)
         about: dict = {"force_time_step": True, "energy_tolerance": 0, **(engine or {})}
-        built = scene.set_engines(self.net, scene.SceneParameters(gravity=gravity, **about))
-        self.sail, self.forces, self.ledger = built, built.forces, built.ledger
+        self.sail = scene.set_engines(self.net, scene.SceneParameters(gravity=gravity, **about))
+        self.forces, self.ledger = self.sail.forces, self.sail.ledger
         self.ledger.dead = True
         self.states = [O.bodies[i].state for i in self.net.bodyIds]
         self.masses = np.array(self.net.masses)
 
     def place(self, positions: ArrayLike, velocities: ArrayLike | None = None) -> None:
         """Put the nodes at positions (N, 3) [m] with velocities (N, 3) [m/s], default 0."""
-        if velocities is None:
-            velocities = np.zeros_like(self.rest)
-        places = np.asarray(positions, dtype=float).tolist()
-        speeds = np.asarray(velocities, dtype=float).tolist()
-        for state, x, v in zip(self.states, places, speeds):
-            state.pos, state.vel = x, v
+        speeds = np.zeros_like(self.rest) if velocities is None else np.asarray(velocities)
+        self.sail.place(np.asarray(positions))
+        for state, v in zip(self.states, speeds.tolist()):
+            state.vel = v
         self.forces.forgetVelocities()
 
     def positions(self) -> np.ndarray:
         """Present positions (N, 3) [m]."""
-        return np.array([state.pos for state in self.states])
+        return self.sail.positions()
 
     def velocities(self) -> np.ndarray:
         """Present velocities (N, 3) [m/s], half a step before the positions."""
@@ -111,12 +99,11 @@ def ripple(model: Model, steps: int) -> float:
 
     It sees the fast modes, which go unstable first, and not drift or rigid motion.
     """
-    largest, before = 0.0, model.velocities()
+    seen = [model.velocities()]
     for _ in range(steps):
         O.step()
-        now = model.velocities()
-        largest, before = max(largest, kinetic(model.masses, now - before)), now
-    return largest
+        seen.append(model.velocities())
+    return max(0.0, *(kinetic(model.masses, change) for change in np.diff(seen, axis=0)))
 
 
 def advance_below(model: Model, steps: int, most: float, chunk: int = 8) -> bool:
@@ -199,62 +186,49 @@ def grid(
 
     `cells` bases of `length` [m] in a row, `cells` rows; `height` [m] of one, or of each row.
     """
-    height = length * np.sqrt(3) / 2 if height is None else height
-    heights = np.broadcast_to(np.asarray(height, dtype=float), cells)
-    level = np.concatenate([[0.0], np.cumsum(heights)])
-    rows = cells + 1
-    nodes = np.zeros((rows * rows, 3))
-    for j in range(rows):
-        nodes[j * rows : (j + 1) * rows, 0] = length * (np.arange(rows) + 0.5 * (j % 2))
-        nodes[j * rows : (j + 1) * rows, 1] = level[j]
-    triangles = []
-    for j in range(cells):
-        for i in range(cells):
-            a, b = j * rows + i, j * rows + i + 1
-            c, d = a + rows, b + rows
-            triangles += [(a, b, c), (b, d, c)] if j % 2 == 0 else [(a, b, d), (a, d, c)]
-    return nodes, np.array(triangles)
+    heights = np.broadcast_to(length * np.sqrt(3) / 2 if height is None else height, cells)
+    level, rows = np.concatenate([[0.0], np.cumsum(heights)]), cells + 1
+    j, i = (axis.ravel() for axis in np.mgrid[:rows, :rows])
+    nodes = np.column_stack([length * (i + 0.5 * (j % 2)), level[j], np.zeros(rows * rows)])
+    j, i = (axis.ravel() for axis in np.mgrid[:cells, :cells])
+    a, odd = j * rows + i, j % 2 == 1
+    b, c, d = a + 1, a + rows, a + rows + 1
+    pairs = np.column_stack([a, b, np.where(odd, d, c), np.where(odd, a, b), d, c])
+    return nodes, pairs.reshape(-1, 3)
 
 
 def two_triangles(
     theta: float, heights: Sequence[float] = (0.02, 0.02), length: float = 0.02
 ) -> np.ndarray:
     """Nodes A, B, C, D [m] of two triangles on a mountain crease AB at an angle theta [rad]."""
-    half = 0.5 * theta
-    arms = [np.array([0.0, side * np.sin(half), -np.cos(half)]) for side in (1, -1)]
-    middle = np.array([0.5 * length, 0.0, 0.0])
-    ends = [np.zeros(3), np.array([length, 0.0, 0.0])]
-    return np.array(ends + [middle + h * arm for h, arm in zip(heights, arms)])
+    s, c = np.sin(0.5 * theta), np.cos(0.5 * theta)
+    (high, low), x = heights, 0.5 * length
+    return np.array([(0, 0, 0), (length, 0, 0), (x, high * s, -high * c), (x, -low * s, -low * c)])
 
 
 TWO_TRIANGLES = ((0, 1, 2), (1, 0, 3))
 
 
-def folder(quick: bool) -> Path:
-    """Where a topic's files go: reference/stability/, or with `quick` build/stability/."""
-    path = OTHER if quick else FULL
-    path.mkdir(parents=True, exist_ok=True)
-    return path
+def publish(name: str, quick: bool, header: str, rows: Iterable[Sequence], drawing: Figure) -> None:
+    """Write a topic's table and picture into reference/stability/, or with `quick` build/stability/.
 
-
-def write_table(path: Path, header: Sequence[str], rows: Iterable[Sequence]) -> None:
-    """Write rows of numbers and words as CSV, whole or not at all."""
+    `header` names the columns, "; " between two, of `rows` of numbers and words: NAME.csv. Each
+    file is written whole or not at all; the picture is without the date in it.
+    """
+    out = BUILD / "stability" if quick else REFERENCE / "stability"
+    out.mkdir(parents=True, exist_ok=True)
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(header)
+    writer.writerow(header.split("; "))
     for row in rows:
         writer.writerow([f"{v:.6g}" if isinstance(v, (float, np.floating)) else v for v in row])
-    replace_text(path, stream.getvalue())
+    replace_text(out / f"{name}.csv", stream.getvalue())
+    plots.save(drawing, out / f"{name}.png", dpi=72, metadata={"Software": None})
 
 
 def figure(
     columns: int = 1, rows: int = 1, width: float = 5.0, height: float = 3.8
-) -> tuple[Figure, np.ndarray]:
-    """A Figure and its axes (rows, columns)."""
+) -> tuple[Figure, Sequence[Axes]]:
+    """A Figure and its axes, row by row; width and height [inches] of one."""
     drawing = Figure(figsize=(width * columns, height * rows), layout="constrained")
-    return drawing, drawing.subplots(rows, columns, squeeze=False)
-
-
-def save(drawing: Figure, path: Path) -> None:
-    """Write a picture, without the date in it."""
-    plots.save(drawing, path, dpi=72, metadata={"Software": None})
+    return drawing, drawing.subplots(rows, columns, squeeze=False).ravel()

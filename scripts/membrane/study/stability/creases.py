@@ -28,7 +28,7 @@ turn through the cut of theta.
 """
 
 import __main__
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from itertools import product
@@ -40,13 +40,14 @@ from membrane import scene
 from membrane.mesh import SailMesh
 from membrane.parameters import SailParameters
 from membrane.study.verification.deployment import begin, equilibrium
+from numpy.typing import ArrayLike
 from yade import wrapper as yade
 
 from ..sources import paper as reference
-from .common import TWO_TRIANGLES, Model, O, figure, folder, kinetic, save, two_triangles
-from .common import write_table
+from .common import TWO_TRIANGLES, Model, O, figure, kinetic, publish, two_triangles
 
 YOUNG, THICKNESS, DENSITY = 3.2e9, 7.5e-6, 1420.0
+BENDING = reference.bending_stiffness(YOUNG, THICKNESS)  # E J [N m]; times beta, of a crease
 GAMMA, LENGTH = 100.0, 0.02
 SAIL_VALUES = (
     "kinetic energy [J]",
@@ -54,11 +55,13 @@ SAIL_VALUES = (
     "largest force of a crease on an apex [N]",
     "lowest height / rest [-]",
 )
-HEADER = ("part", "case", "x", "x means", "value", "value means")
+HEADER = "part; case; x; x means; value; value means"
 CORNER = DENSITY * THICKNESS * LENGTH**2 * np.sqrt(0.75) / 6  # kg, of an apex
+MIDDLE = np.array([0.5 * LENGTH, 0.0, 0.0])  # of the crease of `two_triangles` [m]
 HEIGHTS = np.logspace(-5.5, -2, 8)  # m
-LAWS = ("paper", "conservative")
-UNBUCKLED = {"alpha": 1e12, "alphaCrease": 1e12}
+LENGTHS = {"rest": "C0", "current": "C3"}  # colours
+LAWS = {"paper": "-", "conservative": "--"}  # lines
+NATURAL = {"pi/2": 0.5 * np.pi, "pi": np.pi}  # theta0 [rad]
 LOOK = 1e-4  # s, between two looks at the sail's kinetic energy
 # Cases, and seconds
 SAIL = (
@@ -71,9 +74,20 @@ BLOWN_UP = 100.0  # times the kinetic energy in the first row
 
 Case = tuple[float, float, int]  # beta, zeta, refine
 Runs = dict[tuple[Case, str], np.ndarray]  # rows of `sail_run` by case and lengths
-Distances = dict[Case, np.ndarray]
-Curves = Mapping[Any, tuple[np.ndarray, ...]]  # by law and what else is varied
+Curves = dict[Any, tuple[np.ndarray, ...]]  # by law and what else is varied
 Ranges = dict[float, tuple[float, float, int]]  # what `angle_range` returns, by beta
+
+
+def listed(
+    part: str, case: str, means: str, x: Sequence | np.ndarray, values: Mapping[str, ArrayLike]
+) -> list[list]:
+    """Rows of the table: at each of `x` (S,), which `means` that, the `values` (S,) by meaning."""
+    columns = zip(*map(np.atleast_1d, values.values()))
+    return [
+        [part, case, at, means, value, text]
+        for at, row in zip(x, columns)
+        for text, value in zip(values, row)
+    ]
 
 
 def collapse(
@@ -84,16 +98,13 @@ def collapse(
     Equilateral triangles of 20 mm, (7) with `rest` or `current` lengths, three nodes held.
     """
     height = LENGTH * np.sqrt(0.75)
-    bending = beta * reference.bending_stiffness(YOUNG, THICKNESS)
     x = np.array([two_triangles(0.5 * np.pi, (h, height), LENGTH) for h in heights])
     whole = np.tile(two_triangles(np.pi, (height, height), LENGTH), (len(heights), 1))
     creases = np.arange(len(whole)).reshape(-1, 4)
     rest, inside = reference.crease_frame(whole, creases), -np.ones(len(heights))
     v, largest = np.zeros((len(heights), 3)), np.zeros(len(heights))
     for _ in range(steps):
-        nodal, *_ = forces_by_hand(
-            x.reshape(-1, 3), creases, inside, rest, bending, lengths == "current"
-        )
+        nodal, *_ = forces_by_hand(x.reshape(-1, 3), creases, inside, rest, beta, lengths)
         v += step / CORNER * nodal.reshape(x.shape)[:, 2]
         x[:, 2] += step * v
         largest = np.maximum(largest, np.linalg.norm(v, axis=1))
@@ -102,47 +113,28 @@ def collapse(
 
 def collapse_by_hand(lengths: str, beta: float, heights: np.ndarray) -> np.ndarray:
     """Speed (H,) [m/s] from the work of (7) along the arc from theta = pi/2 to 0."""
-    work = beta * reference.bending_stiffness(YOUNG, THICKNESS) * LENGTH * np.pi**2 / 8
+    work = beta * BENDING * LENGTH * np.pi**2 / 8
     reach = heights if lengths == "current" else 0.75 * LENGTH**2 / heights
     return np.sqrt(2 * work / reach / CORNER)
 
 
 def forces_by_hand(
-    x: np.ndarray,
-    creases: np.ndarray,
-    inside: np.ndarray,
-    rest: dict,
-    bending: float,
-    current: bool,
+    x: np.ndarray, creases: np.ndarray, inside: np.ndarray, rest: dict, beta: float, lengths: str
 ) -> tuple[np.ndarray, float, float]:
-    """Forces of (7) and (8) in NumPy, with rest or `current` lengths in (7).
+    """Forces of (7) and (8) in NumPy at positions `x` (N, 3) [m], with these `lengths` in (7).
 
-    Parameters
-    ----------
-    x, creases, inside
-        Positions (N, 3) [m] and others as in reference.crease_angle.
-    rest : dict
-        reference.crease_frame at rest.
-    bending : float
-        beta E J [N m].
-
-    Returns
-    -------
-    nodal : (N, 3) float
-        [N]
-    largest : float
-        Largest force on an apex [N].
-    lowest : float
-        Lowest height over its rest value [-].
+    `creases` and `inside` are as in reference.crease_angle, `rest` is the crease_frame at rest.
+    Returns the forces on the nodes (N, 3) [N], the largest one on an apex [N], and the lowest
+    height over its rest value [-].
     """
     now = reference.crease_frame(x, creases)
     theta = reference.angle_of(now, inside)
-    lengths = now if current else rest
-    moment = bending * np.where(theta >= 0, 1.0, GAMMA) * lengths["length"] * theta
+    frame = now if lengths == "current" else rest
+    moment = beta * BENDING * np.where(theta >= 0, 1.0, GAMMA) * frame["length"] * theta
     on_apex, largest, lowest = [], 0.0, np.inf
     for apex, sign in (("c", 1), ("d", -1)):
         height = "height_" + apex
-        size = sign * inside * moment / np.maximum(lengths[height], 1e-12) ** 2  # no 0/0
+        size = sign * inside * moment / np.maximum(frame[height], 1e-12) ** 2  # no 0/0
         on_apex.append(size[:, None] * now["normal_" + apex])
         largest = max(largest, float(np.abs(size).max()))
         lowest = min(lowest, float((now[height] / rest[height]).min()))
@@ -150,101 +142,54 @@ def forces_by_hand(
     return nodal, largest, lowest
 
 
-class CreaseForces:
-    """Puts (7) and (8) in NumPy on the nodes of the paper's sail; to be called in every step.
-
-    Parameters
-    ----------
-    mesh : SailMesh
-    built : MembraneScene
-    beta : float
-    lengths : str
-        Those in (7): `rest` or `current`.
-
-    Attributes
-    ----------
-    largest : float
-        Force on an apex [N] since it was last set to 0.
-    lowest : float
-        Height over its rest value [-] since it was last set to 1.
-    calls : int
-    """
-
-    def __init__(
-        self, mesh: SailMesh, built: scene.MembraneScene, beta: float, lengths: str
-    ) -> None:
-        self.forces, self.ids = built.forces, built.membrane.bodyIds
-        self.creases = reference.crease_nodes(mesh.triangles, mesh.creases)
-        self.inside = -mesh.crease_signs
-        self.rest = reference.crease_frame(mesh.nodes, self.creases)
-        self.bending = beta * reference.bending_stiffness(YOUNG, THICKNESS)
-        self.current = lengths == "current"
-        self.largest, self.lowest, self.calls = 0.0, 1.0, 0
-
-    def __call__(self) -> None:
-        x = np.array([(p[0], p[1], p[2]) for p in self.forces.lastPositions()])
-        nodal, largest, lowest = forces_by_hand(
-            x, self.creases, self.inside, self.rest, self.bending, self.current
-        )
-        self.largest, self.lowest = max(self.largest, largest), min(self.lowest, lowest)
-        for i, force in zip(self.ids, nodal.tolist()):
-            O.forces.addF(i, force)
-        self.calls += 1
-
-
 @contextmanager
-def creases_by_hand(built: scene.MembraneScene, creases: CreaseForces) -> Iterator[None]:
-    """In the block `creases` makes the forces of a sail's creases, and the plugin none."""
+def creases_by_hand(
+    mesh: SailMesh, built: scene.MembraneScene, beta: float, lengths: str
+) -> Iterator[list[tuple[float, float]]]:
+    """In the block (7) and (8) in NumPy make the forces of a sail's creases, and the plugin none.
+
+    Unless `lengths`, those in (7), are `plugin`: its own creases. Yields a list to which each step
+    adds largest force on an apex [N] and lowest height over its rest value [-].
+    """
+    seen: list[tuple[float, float]] = []
+    if lengths == "plugin":
+        yield seen
+        return
+    creases = reference.crease_nodes(mesh.triangles, mesh.creases)
+    rest = reference.crease_frame(mesh.nodes, creases)
+
+    def put():
+        x = built.last_positions()
+        nodal, *worst = forces_by_hand(x, creases, -mesh.crease_signs, rest, beta, lengths)
+        seen.append(tuple(worst))
+        for i, force in zip(built.membrane.bodyIds, nodal.tolist()):
+            O.forces.addF(i, force)
+
     built.forces.beta = 0.0
-    __main__.put_crease_forces = creases  # PyRunner looks there
+    __main__.put_crease_forces = put  # PyRunner looks there
     runner = yade.PyRunner(command="put_crease_forces()", iterPeriod=1, initRun=True)
     engines = O.engines
     at = next(i for i, e in enumerate(engines) if isinstance(e, type(built.forces)))
     O.engines = [*engines[: at + 1], runner, *engines[at + 1 :]]
     try:
-        yield
+        yield seen
     finally:
         del __main__.put_crease_forces
 
 
+@np.errstate(all="ignore")
 def sail_run(
     case: Case, lengths: str, seconds: float, row: float = 2e-3
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Run the paper's sail from its release, with creases by the plugin or by CreaseForces.
+    """Run the paper's sail from its release, with creases by the plugin or `creases_by_hand`.
 
     Parameters
     ----------
     case : Case
     lengths : str
-        `plugin`: its own creases; `rest`, `current`: see CreaseForces.
-    seconds : float
-        [s]
-    row : float
-        Time between rows [s].
-
-    Returns
-    -------
-    rows, frames
-        As `watched` returns them.
-    """
-    beta, zeta, refine = case
-    start = SailParameters(refine=refine)
-    p = replace(start, beta=beta, zeta=zeta)
-    sail, built = begin(p, equilibrium(start), ledger=False)
-    creases = CreaseForces(sail.mesh, built, beta, lengths)
-    if lengths == "plugin":
-        return watched(built, creases, seconds, row)
-    with creases_by_hand(built, creases):
-        rows, frames = watched(built, creases, seconds, row)
-    assert creases.calls >= (round(rows[-1, 0] / LOOK) - 1) * round(LOOK / p.dt)
-    return rows, frames
-
-
-@np.errstate(all="ignore")
-def watched(
-    built: scene.MembraneScene, creases: CreaseForces, seconds: float, row: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Run a sail for `seconds`, or until it has blown up, and tell of it every `row` [s].
+        `plugin`: its own creases; `rest`, `current`: those in (7), by hand.
+    seconds, row : float
+        [s]; it ends before if it has blown up. Time between rows [s].
 
     Returns
     -------
@@ -254,51 +199,38 @@ def watched(
     frames : (S, N, 3) float
         Positions [m].
     """
-    masses, ids = built.masses(), built.membrane.bodyIds
+    beta, zeta, refine = case
+    start = SailParameters(refine=refine)
+    sail, built = begin(replace(start, beta=beta, zeta=zeta), equilibrium(start), ledger=False)
     stride, between, looks = round(LOOK / O.dt), round(row / LOOK), round(seconds / LOOK)
     rows: list[list[float]] = []
-    frames = []
-    for look in range(1, looks + 1):
-        try:
-            scene.advance(stride)
-        except RuntimeError:  # numbers overflowed between two looks
-            rows.append([look * LOOK, np.inf, np.inf, np.inf, creases.lowest])
-            break
-        v = np.array([O.bodies[i].state.vel for i in ids])
-        energy = kinetic(masses, v)
-        last = look == looks or not energy < (BLOWN_UP * rows[0][1] if rows else np.inf)
-        if look % between == 0 or last:
-            speed = float(np.linalg.norm(v, axis=1).max())
-            rows.append([look * LOOK, energy, speed, creases.largest, creases.lowest])
-            frames.append(built.positions())
-            creases.largest, creases.lowest = 0.0, 1.0
-        if last:
-            break
+    frames, told = [], 0
+    with creases_by_hand(sail.mesh, built, beta, lengths) as seen:
+        for look in range(1, looks + 1):
+            try:
+                scene.advance(stride)
+            except RuntimeError:  # numbers overflowed between two looks
+                lowest = min([1.0, *(height for _, height in seen[told:])])
+                rows.append([look * LOOK, np.inf, np.inf, np.inf, lowest])
+                break
+            v = np.array([O.bodies[i].state.vel for i in built.membrane.bodyIds])
+            energy = kinetic(built.masses(), v)
+            last = look == looks or not energy < (BLOWN_UP * rows[0][1] if rows else np.inf)
+            if look % between == 0 or last:
+                force, height = zip((0.0, 1.0), *seen[told:])
+                speed = float(np.linalg.norm(v, axis=1).max())
+                rows.append([look * LOOK, energy, speed, max(force), min(height)])
+                frames.append(built.positions())
+                told = len(seen)
+            if last:
+                break
+    assert lengths == "plugin" or len(seen) >= (round(rows[-1][0] / LOOK) - 1) * stride
     return np.array(rows), np.array(frames)
 
 
 def blown_up(rows: np.ndarray) -> bool:
     """Whether rows of `sail_run` end by its kinetic energy."""
     return not rows[-1, 1] < BLOWN_UP * rows[0, 1]
-
-
-def sail_lengths(quick: bool) -> tuple[Runs, Distances]:
-    """Runs {(case, lengths): rows} of the sail, and {case: distances (S,) [m]}.
-
-    Distances are the largest ones of a node in the control from that in the plugin's own run.
-    """
-    runs, distances, row = {}, {}, 2e-3
-    for case, seconds in SAIL[1:2] if quick else SAIL:
-        if quick:
-            seconds, row = 2e-3, 1e-3
-        _, frames = sail_run(case, "plugin", seconds, row)
-        current, _ = sail_run(case, "current", seconds, row)
-        # The control need run no longer than up to the row at which the other has ended.
-        rows = int(np.ceil(current[-1, 0] / row - 1e-9))
-        control, copies = sail_run(case, "rest", rows * row, row)
-        distances[case] = np.linalg.norm(copies - frames[:rows], axis=2).max(axis=1)
-        runs[case, "rest"], runs[case, "current"] = control, current
-    return runs, distances
 
 
 def case_name(case: Case) -> str:
@@ -310,53 +242,67 @@ def case_name(case: Case) -> str:
 def angle_range(beta: float, seconds: float) -> tuple[float, float, int]:
     """Lowest and highest angle [rad] of the sail's creases, and how often one passed the cut."""
     _, built = begin(SailParameters(beta=beta), equilibrium(SailParameters()), ledger=False)
-    before = np.array(built.forces.creaseAngles())
-    lowest, highest, passes = before.min(), before.max(), 0
+    seen = [built.forces.creaseAngles()]
     for _ in range(round(seconds / LOOK)):
         scene.advance(round(LOOK / O.dt))
-        now = np.array(built.forces.creaseAngles())
-        lowest, highest = min(lowest, now.min()), max(highest, now.max())
-        passes += int(np.sum(np.abs(now - before) > np.pi))
-        before = now
-    return float(lowest), float(highest), passes
+        seen.append(built.forces.creaseAngles())
+    passes = np.sum(np.abs(np.diff(seen, axis=0)) > np.pi)
+    return float(np.min(seen)), float(np.max(seen)), int(passes)
 
 
 # --- a pair ---
 
 
-def law_curve(law: str, theta0: float, angles: np.ndarray) -> np.ndarray:
-    """Force [N] of the plugin on C along its opening direction, at angles (S,) [rad]."""
-    return force_and_energy(law, theta0, angles)[0]
-
-
 def force_and_energy(law: str, theta0: float, angles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Force (S,) [N] on C along its opening direction, and energy (S,) [J], at angles (S,) [rad].
+    """Force (S,) [N] of the plugin on C along its opening direction, and energy (S,) [J].
 
-    Angles may lie beyond the cut at 3 pi/2: the pair is turned on.
+    At angles (S,) [rad], which may lie beyond the cut at 3 pi/2: the pair is turned on.
     """
-    rest = two_triangles(np.pi)
-    model = pair(rest, beta=30.0, theta0=theta0, crease_law=law)
-    forces, energies = [], []
+    model = pair(beta=30.0, theta0=theta0, crease_law=law)
+    found = []
     for theta in angles:
         x = two_triangles(theta)
         model.balance(x)
-        held = np.array(O.forces.permF(model.net.bodyIds[2]))
-        arm = x[2] - [0.5 * LENGTH, 0, 0]
-        opening = np.cross([1.0, 0, 0], arm) / np.linalg.norm(arm)
+        opening = np.cross([1.0, 0, 0], x[2] - MIDDLE) / np.linalg.norm(x[2] - MIDDLE)
         # Sides are at rest: all of the force is the crease's.
-        forces.append(-float(held @ opening))
-        energies.append(model.forces.creaseEnergy())
-    return np.array(forces), np.array(energies)
+        held = np.array(O.forces.permF(model.net.bodyIds[2]))
+        found.append((-float(held @ opening), model.forces.creaseEnergy()))
+    force, energy = np.transpose(found)
+    return force, energy
 
 
-def pair(rest: np.ndarray, *, buckling: bool = True, **engine: Any) -> Model:
-    """A Model of two triangles on a crease."""
-    options: dict = {"alphaCrease": 100.0} if buckling else UNBUCKLED
-    return Model(rest, TWO_TRIANGLES, creases=[(0, 1)], crease_signs=[1], engine=engine, **options)
+def pair(rest: np.ndarray = two_triangles(np.pi), buckling: bool = True, **engine: Any) -> Model:
+    """A Model of two triangles on a crease, with nodes at `rest` (4, 3) [m]."""
+    alphas = {"alphaCrease": 100.0} if buckling else {"alpha": 1e12, "alphaCrease": 1e12}
+    crease: dict = {"creases": [(0, 1)], "crease_signs": [1], **alphas}
+    return Model(rest, TWO_TRIANGLES, engine=engine, **crease)
 
 
-def follow(model: Model, seconds: float) -> tuple[np.ndarray, np.ndarray]:
-    """All energy [J] and the angle [rad] of a pair's crease in each step from now on, both (S,)."""
+def opening(model: Model, start: np.ndarray) -> np.ndarray:
+    """Velocities (4, 3) [m/s] of a pair that opens at `start` (4, 3) [m], its centre at rest.
+
+    Those of the apexes over LENGTH are the rate of theta/2, 1/s, apart from the centre's motion.
+    """
+    spin = np.zeros((4, 3))
+    for apex, sign in ((2, 1.0), (3, -1.0)):
+        spin[apex] = sign * np.cross([1.0, 0, 0], start[apex] - MIDDLE)
+    return spin - np.average(spin, axis=0, weights=model.masses)
+
+
+def follow(
+    model: Model,
+    share: float,
+    seconds: float,
+    start: np.ndarray,
+    velocities: ArrayLike | None = None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """All energy [J] and the angle [rad] of a pair's crease in each step, both (S,).
+
+    It begins at `start` (4, 3) [m] with `velocities` (4, 3) [m/s], default 0, and goes on for
+    `seconds` in steps of `share` of the estimate.
+    """
+    model.place(start, velocities)
+    O.dt = share * model.forces.criticalTimeStep()
     ledger = model.start_ledger()
     totals, angles = [], []
     for _ in range(int(seconds / O.dt)):
@@ -368,18 +314,9 @@ def follow(model: Model, seconds: float) -> tuple[np.ndarray, np.ndarray]:
 
 def swing(share: float, law: str, seconds: float = 0.05) -> tuple[float, np.ndarray]:
     """Largest relative error of the energy, and angles (S,) [rad], of a pair that swings freely."""
-    rest = two_triangles(np.pi)
-    model = pair(rest, beta=300.0, crease_law=law)
-    start = two_triangles(2.0)
-    arm = (start[2] - [0.5 * LENGTH, 0, 0]) / LENGTH
-    opening = np.cross([1.0, 0, 0], arm)
-    velocities = np.zeros((4, 3))
-    velocities[2] = 3.0 * opening
-    velocities[3] = 3.0 * opening * [1, -1, 1]
-    velocities -= np.average(velocities, axis=0, weights=model.masses)
-    model.place(start, velocities)
-    O.dt = share * model.forces.criticalTimeStep()
-    totals, angles = follow(model, seconds)
+    model, start = pair(beta=300.0, crease_law=law), two_triangles(2.0)
+    velocities = 3.0 / LENGTH * opening(model, start)
+    totals, angles = follow(model, share, seconds, start, velocities)
     return float(np.abs(totals / totals[0] - 1).max()), angles
 
 
@@ -404,18 +341,16 @@ def swing_about(
     - 1 [-].
     """
     beta = 300.0
-    model = pair(two_triangles(np.pi), buckling=False, beta=beta, theta0=theta0, crease_law=law)
-    model.place(two_triangles(theta0 - amplitude))
-    O.dt = share * model.forces.criticalTimeStep()
-    totals, angles = follow(model, seconds)
+    model = pair(buckling=False, beta=beta, theta0=theta0, crease_law=law)
+    totals, angles = follow(model, share, seconds, two_triangles(theta0 - amplitude))
     angles -= theta0
     at = np.flatnonzero(angles[:-1] * angles[1:] < 0)
     zeros = (at + angles[at] / (angles[at] - angles[at + 1])) * O.dt
-    stiffness = beta * reference.bending_stiffness(YOUNG, THICKNESS)  # l_AB over the height is 1
     error = np.nan  # of less than a period
     if len(zeros) > 2:
         last = 2 * ((len(zeros) - 1) // 2)
         found = np.pi * last / (zeros[last] - zeros[0])
+        stiffness = beta * BENDING  # l_AB over the height is 1
         error = float(found / swing_frequency(model.masses, stiffness, theta0) - 1)
     return float(np.abs(totals / totals[0] - 1).max()), error
 
@@ -426,18 +361,12 @@ def turn_through_cut(law: str, seconds: float) -> tuple[np.ndarray, np.ndarray]:
     Returns the angle [rad] without the cut, and the sum of all energies over K [-], both (S,).
     """
     beta = 30.0
-    stiffness = beta * reference.bending_stiffness(YOUNG, THICKNESS)
-    model = pair(two_triangles(np.pi), buckling=False, beta=beta, crease_law=law)
+    model = pair(buckling=False, beta=beta, crease_law=law)
     start = two_triangles(1.4 * np.pi)
-    spin = np.zeros((4, 3))
-    for apex, sign in ((2, 1.0), (3, -1.0)):
-        spin[apex] = sign * np.cross([1.0, 0, 0], start[apex] - [0.5 * LENGTH, 0, 0])
-    spin -= np.average(spin, axis=0, weights=model.masses)
-    spin *= np.sqrt(5 * stiffness / kinetic(model.masses, spin))
-    model.place(start, spin)
-    O.dt = 0.2 * model.forces.criticalTimeStep()
-    totals, angles = follow(model, seconds)
-    return np.unwrap(angles), totals / stiffness
+    spin = opening(model, start)
+    spin *= np.sqrt(5 * beta * BENDING / kinetic(model.masses, spin))
+    totals, angles = follow(model, 0.2, seconds, start, spin)
+    return np.unwrap(angles), totals / (beta * BENDING)
 
 
 def momentum(
@@ -448,8 +377,7 @@ def momentum(
     Divided by the moment of inertia times 1/s, it is a spin rate [rad/s].
     """
     heights = (0.02, 0.02 * ratio)
-    rest = two_triangles(np.pi, heights)
-    model = pair(rest, beta=300.0, crease_law=law, zeta=zeta)
+    model = pair(two_triangles(np.pi, heights), beta=300.0, crease_law=law, zeta=zeta)
     start = two_triangles(1.5, heights)
     model.place(start)
     O.dt = 0.5 * model.forces.criticalTimeStep()
@@ -472,65 +400,65 @@ def momentum(
 def measure_lengths(quick: bool, rows: list[list]) -> dict[tuple[str, float], np.ndarray]:
     """Speeds (H,) by lengths and beta of a collapsed triangle's apex."""
     speeds = {}
-    for lengths in ("rest", "current"):
-        for beta in (30.0,) if quick else (3.0, 30.0, 300.0):
-            name = f"{lengths}, beta = {beta:g}"
-            speeds[lengths, beta] = collapse(lengths, beta, HEIGHTS)
-            hand = collapse_by_hand(lengths, beta, HEIGHTS)
-            for height, speed, expected in zip(HEIGHTS, speeds[lengths, beta], hand):
-                where = ["lengths", name, height, "height [m]"]
-                rows.append([*where, speed, "largest speed of the apex (NumPy) [m/s]"])
-                rows.append([*where, expected, "by hand, from pi/2 to 0 [m/s]"])
+    for lengths, beta in product(LENGTHS, (30.0,) if quick else (3.0, 30.0, 300.0)):
+        speeds[lengths, beta] = collapse(lengths, beta, HEIGHTS)
+        values = {
+            "largest speed of the apex (NumPy) [m/s]": speeds[lengths, beta],
+            "by hand, from pi/2 to 0 [m/s]": collapse_by_hand(lengths, beta, HEIGHTS),
+        }
+        rows += listed("lengths", f"{lengths}, beta = {beta:g}", "height [m]", HEIGHTS, values)
     return speeds
 
 
-def measure_sail(quick: bool, rows: list[list]) -> tuple[Runs, Distances]:
-    """What `sail_lengths` returns."""
-    runs, distances = sail_lengths(quick)
-    for (case, lengths), found in runs.items():
-        where = ["sail", f"{lengths}, {case_name(case)}"]
-        for time, *values in found:
-            for value, text in zip(values, SAIL_VALUES):
-                rows.append([*where, time, "time [s]", value, text])
-        if lengths == "rest":
-            text = "largest distance from the plugin's own run [m]"
-            for time, distance in zip(found[:, 0], distances[case]):
-                rows.append([*where, time, "time [s]", distance, text])
+def measure_sail(quick: bool, rows: list[list]) -> tuple[Runs, dict[Case, np.ndarray]]:
+    """Runs {(case, lengths): rows} of the sail, and {case: distances (S,) [m]}.
+
+    Distances are the largest ones of a node in the control from that in the plugin's own run.
+    """
+    runs, distances, row = {}, {}, 1e-3 if quick else 2e-3
+    for case, seconds in ((SAIL[1][0], 2e-3),) if quick else SAIL:
+        _, frames = sail_run(case, "plugin", seconds, row)
+        current, _ = sail_run(case, "current", seconds, row)
+        # The control need run no longer than up to the row at which the other has ended.
+        count = int(np.ceil(current[-1, 0] / row - 1e-9))
+        control, copies = sail_run(case, "rest", count * row, row)
+        distances[case] = np.linalg.norm(copies - frames[:count], axis=2).max(axis=1)
+        runs[case, "rest"], runs[case, "current"] = control, current
+        for lengths, found in (("rest", control), ("current", current)):
+            where = "sail", f"{lengths}, {case_name(case)}", "time [s]", found[:, 0]
+            rows += listed(*where, dict(zip(SAIL_VALUES, found.T[1:])))
+            if lengths == "rest":
+                text = "largest distance from the plugin's own run [m]"
+                rows += listed(*where, {text: distances[case]})
     return runs, distances
 
 
 def measure_law(quick: bool, rows: list[list]) -> Curves:
     """Angles (S,) [rad] and forces (S,) [N] by law and theta0."""
-    angles = np.sort(
-        np.append(np.linspace(-0.499, 1.499, 25 if quick else 81) * np.pi, [-1e-6, 1e-6])
-    )
-    curves = {}
-    for law in LAWS:
-        for theta0 in (0.0, 0.5 * np.pi):
-            curves[law, theta0] = angles, law_curve(law, theta0, angles)
-            name = f"{law}, theta0 = {theta0:.4g}"
-            for theta, force in zip(*curves[law, theta0]):
-                rows.append(["law", name, theta, "theta [rad]", force, "force on C [N]"])
+    angles = np.linspace(-0.499, 1.499, 25 if quick else 81) * np.pi
+    angles, curves = np.sort(np.append(angles, [-1e-6, 1e-6])), {}
+    for law, theta0 in product(LAWS, (0.0, 0.5 * np.pi)):
+        curves[law, theta0] = angles, force_and_energy(law, theta0, angles)[0]
+        values = {"force on C [N]": curves[law, theta0][1]}
+        rows += listed("law", f"{law}, theta0 = {theta0:.4g}", "theta [rad]", angles, values)
     return curves
 
 
 def measure_swings(quick: bool, rows: list[list]) -> tuple[dict, dict]:
     """Energy errors by (law, share), and errors of energy and frequency about theta0."""
     shares = (0.5,) if quick else (0.8, 0.4, 0.2, 0.1)
-    through, about = {}, {}
-    for law in LAWS:
-        for share in shares:
-            through[law, share], seen = swing(share, law, 0.005 if quick else 0.05)
-            text = f"energy error, angles {seen.min():.3g} ... {seen.max():.3g} rad [-]"
-            rows.append(["swing", law, share, "step / estimate [-]", through[law, share], text])
+    means, through, about = "step / estimate [-]", {}, {}
+    for law, share in product(LAWS, shares):
+        through[law, share], seen = swing(share, law, 0.005 if quick else 0.05)
+        text = f"energy error, angles {seen.min():.3g} ... {seen.max():.3g} rad [-]"
+        rows += listed("swing", law, means, [share], {text: through[law, share]})
     for law, theta0, size in product(LAWS, ("pi", "pi/2"), (0.02,) if quick else (0.02, 1.0)):
         for share in shares:
-            angle = {"pi": np.pi, "pi/2": 0.5 * np.pi}[theta0]
-            found = swing_about(angle, law, share, size, 0.03 if quick else 0.06)
+            found = swing_about(NATURAL[theta0], law, share, size, 0.03 if quick else 0.06)
             about[law, theta0, size, share] = found
-            where = ["about", f"{law}, theta0 = {theta0}, swing {size:g} rad", share]
-            for value, text in zip(found, ("energy error [-]", "frequency / by hand - 1 [-]")):
-                rows.append([*where, "step / estimate [-]", value, text])
+            values = dict(zip(("energy error [-]", "frequency / by hand - 1 [-]"), found))
+            case = f"{law}, theta0 = {theta0}, swing {size:g} rad"
+            rows += listed("about", case, means, [share], values)
     return through, about
 
 
@@ -541,42 +469,35 @@ def measure_cut(quick: bool, rows: list[list]) -> tuple[Curves, Curves]:
     curves, turns = {}, {}
     for law in LAWS:
         for theta0 in (0.0, 0.5 * np.pi):
-            curves[law, theta0] = angles, *force_and_energy(law, theta0, angles)
-            name = f"{law}, theta0 = {theta0:.4g}"
-            for theta, force, energy in zip(*curves[law, theta0]):
-                where = ["cut", name, theta, "theta [rad], turned on beyond 3 pi/2"]
-                rows.append([*where, force, "force on C [N]"])
-                rows.append([*where, energy, "crease energy [J]"])
-        turns[law] = turn_through_cut(law, 0.002 if quick else 0.01)
-        picks = np.linspace(0, len(turns[law][0]) - 1, 10 if quick else 200).astype(int)
-        for theta, energy in zip(*(values[picks] for values in turns[law])):
-            where = ["cut", f"{law}, free pair, theta0 = 0", theta, "theta [rad] without the cut"]
-            rows.append([*where, energy, "all energy / K [-]"])
+            force, energy = force_and_energy(law, theta0, angles)
+            curves[law, theta0] = angles, force, energy
+            where = "cut", f"{law}, theta0 = {theta0:.4g}", "theta [rad], turned on beyond 3 pi/2"
+            rows += listed(*where, angles, {"force on C [N]": force, "crease energy [J]": energy})
+        turns[law] = turned, energy = turn_through_cut(law, 0.002 if quick else 0.01)
+        picks = np.linspace(0, len(turned) - 1, 10 if quick else 200).astype(int)
+        where = "cut", f"{law}, free pair, theta0 = 0", "theta [rad] without the cut"
+        rows += listed(*where, turned[picks], {"all energy / K [-]": energy[picks]})
     return curves, turns
 
 
 def measure_range(quick: bool, rows: list[list]) -> Ranges:
     """What `angle_range` returns, by beta."""
+    texts = "lowest theta [rad]", "highest theta [rad]", "times a crease passed the cut [-]"
     ranges = {}
     for beta in (30.0,) if quick else (30.0, 3.0, 0.3):
         ranges[beta] = angle_range(beta, 2e-3 if quick else 0.2)
-        texts = "lowest theta [rad]", "highest theta [rad]", "times a crease passed the cut [-]"
-        for value, text in zip(ranges[beta], texts):
-            rows.append(["range", "paper", beta, "beta [-]", value, text])
+        rows += listed("range", "paper", "beta [-]", [beta], dict(zip(texts, ranges[beta])))
     return ranges
 
 
 def measure_momentum(quick: bool, rows: list[list]) -> Curves:
     """What `momentum` returns, by law, ratio of heights and zeta."""
-    spins = {}
-    for law in LAWS:
-        for ratio in (1.0, 2.0) if quick else (1.0, 1.25, 1.5, 2.0, 3.0):
-            for zeta in (0.0, 0.1):
-                times, spin = momentum(law, ratio, zeta, 0.01 if quick else 0.1)
-                spins[law, ratio, zeta] = times, spin
-                text = "largest spin rate that came from nothing [rad/s]"
-                name = f"{law}, zeta = {zeta:g}"
-                rows.append(["momentum", name, ratio, "ratio of heights [-]", spin.max(), text])
+    ratios, spins = (1.0, 2.0) if quick else (1.0, 1.25, 1.5, 2.0, 3.0), {}
+    for law, ratio, zeta in product(LAWS, ratios, (0.0, 0.1)):
+        spins[law, ratio, zeta] = _, spin = momentum(law, ratio, zeta, 0.01 if quick else 0.1)
+        values = {"largest spin rate that came from nothing [rad/s]": spin.max()}
+        where = "momentum", f"{law}, zeta = {zeta:g}", "ratio of heights [-]", [ratio]
+        rows += listed(*where, values)
     return spins
 
 
@@ -590,18 +511,16 @@ def run(quick: bool) -> str:
     cuts, turns = measure_cut(quick, rows)
     ranges = measure_range(quick, rows)
     spins = measure_momentum(quick, rows)
-    out = folder(quick)
-    write_table(out / "creases.csv", HEADER, rows)
 
     drawing, axes = figure(columns=2, rows=4)
-    draw_lengths(axes[0, 0], speeds)
-    draw_sail(axes[0, 1], axes[1, 0], runs)
-    draw_law(axes[1, 1], curves)
-    draw_swings(axes[2, 0], *swings)
-    draw_momentum(axes[2, 1], spins)
-    draw_cut(axes[3, 0], cuts, ranges)
-    draw_turns(axes[3, 1], turns)
-    save(drawing, out / "creases.png")
+    draw_lengths(axes[0], speeds)
+    draw_sail(axes[1], axes[2], runs)
+    draw_law(axes[3], curves)
+    draw_swings(axes[4], *swings)
+    draw_momentum(axes[5], spins)
+    draw_cut(axes[6], cuts, ranges)
+    draw_turns(axes[7], turns)
+    publish("creases", quick, HEADER, rows, drawing)
     return " ".join(
         (
             about_lengths(speeds, runs, distances),
@@ -612,17 +531,14 @@ def run(quick: bool) -> str:
     )
 
 
-def about_lengths(speeds: dict, runs: Runs, distances: Distances) -> str:
+def about_lengths(speeds: dict, runs: Runs, distances: dict[Case, np.ndarray]) -> str:
     """A sentence on the lengths in (7)."""
-    largest = {lengths: speeds[lengths, 30.0].max() for lengths in ("rest", "current")}
+    slow, fast = (speeds[lengths, 30.0] for lengths in LENGTHS)
     found = []
     for case in distances:
-        rest, current = (runs[case, lengths] for lengths in ("rest", "current"))
-        end = (
-            f"blows up at {current[-1, 0]:.4g} s"
-            if blown_up(current)
-            else f"holds for {current[-1, 0]:.3g} s"
-        )
+        rest, current = (runs[case, lengths] for lengths in LENGTHS)
+        time = current[-1, 0]
+        end = f"blows up at {time:.4g} s" if blown_up(current) else f"holds for {time:.3g} s"
         found.append(
             f"{case_name(case)}: {end}, lowest height {current[:, 4].min():.2g} of rest, largest "
             f"force {current[:, 3].max():.2g} N (with rest lengths {rest[:, 4].min():.2g} and "
@@ -631,10 +547,9 @@ def about_lengths(speeds: dict, runs: Runs, distances: Distances) -> str:
         )
     return (
         f"(7) at beta = 30 throws the apex of a triangle collapsed to {1e6 * HEIGHTS[0]:.2g} um "
-        f"out at {speeds['current', 30.0][0]:.3g} m/s with current lengths, at "
-        f"{speeds['rest', 30.0][0]:.2g} m/s with rest lengths (NumPy; {largest['current']:.3g} and "
-        f"{largest['rest']:.2g} m/s at most over all heights up to 10 mm). The sail with current "
-        "lengths, " + "; ".join(found) + "."
+        f"out at {fast[0]:.3g} m/s with current lengths, at {slow[0]:.2g} m/s with rest lengths "
+        f"(NumPy; {fast.max():.3g} and {slow.max():.2g} m/s at most over all heights up to 10 mm). "
+        f"The sail with current lengths, {'; '.join(found)}."
     )
 
 
@@ -691,8 +606,7 @@ def about_momentum(spins: Curves) -> str:
 def draw_lengths(axis: Axes, speeds: dict) -> None:
     """Largest speed of a collapsed triangle's apex over its height."""
     for (lengths, beta), speed in speeds.items():
-        color = "C0" if lengths == "rest" else "C3"
-        marker = {3.0: "v", 30.0: "o", 300.0: "^"}[beta]
+        color, marker = LENGTHS[lengths], {3.0: "v", 30.0: "o", 300.0: "^"}[beta]
         name = f"{lengths} lengths, beta = {beta:g}"
         axis.loglog(HEIGHTS, speed, marker, color=color, markersize=4, label=name)
         axis.loglog(HEIGHTS, collapse_by_hand(lengths, beta, HEIGHTS), color=color, linewidth=0.6)
@@ -721,8 +635,8 @@ def draw_sail(left: Axes, right: Axes, runs: Runs) -> None:
 def draw_law(axis: Axes, curves: Curves) -> None:
     """Force over the angle."""
     for (law, theta0), (angles, force) in curves.items():
-        style = "-" if law == "paper" else "--"
-        axis.plot(angles / np.pi, force, style, label=f"{law}, theta0 = {theta0 / np.pi:g} pi")
+        name = f"{law}, theta0 = {theta0 / np.pi:g} pi"
+        axis.plot(angles / np.pi, force, LAWS[law], label=name)
     axis.set(xlabel="theta / pi [-]", ylabel="force on C, opening [N]")
     axis.set_yscale("symlog", linthresh=1e-5)
     axis.set_yticks([-1e-3, -1e-4, 0, 1e-4, 1e-3, 1e-2, 1e-1])
@@ -733,7 +647,7 @@ def draw_law(axis: Axes, curves: Curves) -> None:
 
 def draw_swings(axis: Axes, through: dict, about: dict) -> None:
     """Error of the energy of swings through 0 and about pi, over the step."""
-    for law, style in zip(LAWS, ("-", "--")):
+    for law, style in LAWS.items():
         curves = {f"{law}, through 0": {h: e for (name, h), e in through.items() if name == law}}
         for (name, theta0, size, share), (error, _) in about.items():
             if (name, theta0) == (law, "pi"):
@@ -749,32 +663,29 @@ def draw_momentum(axis: Axes, spins: Curves) -> None:
     """Spin that came from nothing."""
     for (law, ratio, zeta), (times, spin) in spins.items():
         if zeta == 0.1:
-            style = "-" if law == "paper" else "--"
-            axis.plot(times[1:], spin[1:] + 1e-16, style, label=f"{law}, 1 : {ratio:g}")
+            axis.plot(times[1:], spin[1:] + 1e-16, LAWS[law], label=f"{law}, 1 : {ratio:g}")
     axis.set(xlabel="time [s]", ylabel="angular momentum / inertia [rad/s]", yscale="log")
     axis.legend(fontsize=6)
 
 
 def draw_cut(axis: Axes, cuts: Curves, ranges: Ranges) -> None:
     """Force and energy on both sides of the cut, and the sail's highest angles."""
-    stiffness = 30.0 * reference.bending_stiffness(YOUNG, THICKNESS)
+    stiffness = 30.0 * BENDING
     for (law, theta0), (angles, force, energy) in cuts.items():
-        style = {"linestyle": "-" if law == "paper" else "--", "alpha": 1 if theta0 == 0 else 0.5}
+        style = {"linestyle": LAWS[law], "alpha": 1 if theta0 == 0 else 0.5}
         name = f"{law}, theta0 = {theta0 / np.pi:g} pi"
         axis.plot(angles / np.pi, energy / stiffness, color="C0", **style)
         axis.plot(angles / np.pi, force * LENGTH / stiffness, color="C1", label=name, **style)
     for i, (beta, (_, high, _)) in enumerate(ranges.items()):
         axis.axvline(high / np.pi, color=f"C{i + 2}", label=f"highest, sail at beta = {beta:g}")
-    axis.set(
-        xlabel="theta / pi, turned on beyond the cut at 1.5 [-]",
-        ylabel="moment (orange), energy (blue) / K [-]",
-    )
+    axis.set(xlabel="theta / pi, turned on beyond the cut at 1.5 [-]")
+    axis.set(ylabel="moment (orange), energy (blue) / K [-]")
     axis.legend(fontsize=6)
 
 
 def draw_turns(axis: Axes, turns: Curves) -> None:
     """Energy of a free pair that turns through the cut."""
-    for law, style in zip(LAWS, ("-", "--")):
+    for law, style in LAWS.items():
         turned, energy = turns[law]
         axis.plot(turned / np.pi, energy, style, label=law)
     gain = (GAMMA - 9) * np.pi**2 / 8  # gamma (pi/2)²/2 - (3 pi/2)²/2

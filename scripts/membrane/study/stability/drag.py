@@ -10,28 +10,23 @@ estimate takes the slope of the drag, 2 rho V S / 6, as damping: it stays below 
 """
 
 from itertools import product
-from pathlib import Path
 
 import numpy as np
+from matplotlib.figure import Figure
 from membrane import scene
 from membrane.mesh import sail_mesh
 
-from .common import TWO_TRIANGLES, Model, O, bisect, figure, folder, save, two_triangles
-from .common import write_table
+from .common import TWO_TRIANGLES, Model, O, bisect, figure, publish, two_triangles
 
 FILM, THICKNESS = 1420.0, 7.5e-6  # kg/m3, m
 ATMOSPHERE = 1.204  # kg/m3
 PAPER_STEP = 5e-6  # s
 TIP_SPEED = 6.1  # m/s, of the flat sail's corners at 6 pi rad/s
+FILMS = {THICKNESS: "C0", 25e-6: "C1"}  # colours by thickness [m]
 HEADER = (
-    "air density [kg/m3]",
-    "thickness [m]",
-    "speed [m/s]",
-    "reverses above, predicted [s]",
-    "reverses above, measured [s]",
-    "grows above, predicted [s]",
-    "grows above, measured [s]",
-    "estimate of the engine [s]",
+    "air density [kg/m3]; thickness [m]; speed [m/s]; reverses above, predicted [s]; "
+    "reverses above, measured [s]; grows above, predicted [s]; grows above, measured [s]; "
+    "estimate of the engine [s]"
 )
 
 
@@ -42,12 +37,8 @@ def limit(air: float, speed: float, thickness: float = THICKNESS, film: float = 
 
 def plate(air: float, thickness: float) -> Model:
     """A Model of a flat plate of two triangles in the x-z plane."""
-    return Model(
-        two_triangles(np.pi),
-        TWO_TRIANGLES,
-        material=scene.film(thickness=thickness),
-        engine={"air_density": air},
-    )
+    film, engine = scene.film(thickness=thickness), {"air_density": air}
+    return Model(two_triangles(np.pi), TWO_TRIANGLES, material=film, engine=engine)
 
 
 def throw(model: Model, speed: float) -> np.ndarray:
@@ -75,11 +66,8 @@ def sail_in_air(air: float, share: float, seconds: float) -> tuple[float, float,
     size = mesh.film_size
     model = Model(mesh.nodes[:size], mesh.triangles, engine={"air_density": air, "zeta": 0.02})
     O.dt = share * model.forces.criticalTimeStep()
-    spin = 6 * np.pi
-    velocities = np.column_stack(
-        [-spin * model.rest[:, 1], spin * model.rest[:, 0], np.full(size, TIP_SPEED)]
-    )
-    model.place(model.rest, velocities)
+    x, y, _ = 6 * np.pi * model.rest.T
+    model.place(model.rest, np.column_stack([-y, x, np.full(size, TIP_SPEED)]))
     start, largest = model.kinetic(), 0.0
     for _ in range(int(seconds / O.dt) // 200 + 1):
         scene.advance(200)
@@ -89,9 +77,9 @@ def sail_in_air(air: float, share: float, seconds: float) -> tuple[float, float,
 
 def run(quick: bool) -> str:
     """Measure plates and the sail; returns a line of text."""
-    airs = (1.2e-3, ATMOSPHERE, 1000.0)
+    airs, rounds = (1.2e-3, ATMOSPHERE, 1000.0), 8 if quick else 20
     rows, errors = [], []
-    for air, thickness, speed in product(airs, (THICKNESS, 25e-6), (1.0, TIP_SPEED, 100.0)):
+    for air, thickness, speed in product(airs, FILMS, (1.0, TIP_SPEED, 100.0)):
         model = plate(air, thickness)
         throw(model, speed)
         estimate = model.forces.criticalTimeStep()
@@ -103,43 +91,36 @@ def run(quick: bool) -> str:
         def swells(step: float) -> bool:
             return abs(speed_after(model, speed, step, 1)) > speed
 
-        rounds = 8 if quick else 20
         back = bisect(reverses, 0.8 * turn, 1.3 * turn, rounds)
         blow = bisect(swells, 1.6 * turn, 2.6 * turn, rounds)
         rows.append([air, thickness, speed, turn, back, 2 * turn, blow, estimate])
         errors += [abs(back / turn - 1), abs(blow / turn / 2 - 1)]
     binding = limit(ATMOSPHERE, 1.0) / PAPER_STEP
     step, most, end = sail_in_air(ATMOSPHERE, 0.9, 0.005 if quick else 0.05)
-    out = folder(quick)
-    write_table(out / "drag.csv", HEADER, rows)
-    draw(rows, out / "drag.png")
+    publish("drag", quick, HEADER, rows, draw(rows))
     return (
         f"predicted and measured limits agree within {max(errors):.1e}; at 1 atm on 7.5 um film "
-        f"dt < {limit(ATMOSPHERE, TIP_SPEED):.2e} s at {TIP_SPEED} m/s, and {PAPER_STEP:g} s "
-        f"holds up to "
-        f"{binding:.0f} m/s; the flat sail, spinning and moving face on at {TIP_SPEED} m/s in "
-        f"1 atm, at "
-        f"dt = {step:.3g} s: largest kinetic energy {most:.3f}, last {end:.3g} of the first"
+        f"dt < {limit(ATMOSPHERE, TIP_SPEED):.2e} s at {TIP_SPEED} m/s, and {PAPER_STEP:g} s holds "
+        f"up to {binding:.0f} m/s; the flat sail, spinning and moving face on at {TIP_SPEED} m/s "
+        f"in 1 atm, at dt = {step:.3g} s: largest kinetic energy {most:.3f}, last {end:.3g} of the "
+        "first"
     )
 
 
-def draw(rows: list[list], path: Path) -> None:
+def draw(rows: list[list]) -> Figure:
     """Limits over density times speed."""
-    drawing, axes = figure(width=6.0)
-    axis = axes[0, 0]
-    for thickness, color in ((THICKNESS, "C0"), (25e-6, "C1")):
-        mine = sorted([r for r in rows if r[1] == thickness], key=lambda r: r[0] * r[2])
-        flux = np.array([r[0] * r[2] for r in mine])
+    drawing, (axis,) = figure(width=6.0)
+    for thickness, color in FILMS.items():
+        mine = [[row[0] * row[2], *row[3:7]] for row in rows if row[1] == thickness]
+        flux, turn, back, grow, blow = np.transpose(sorted(mine))
         name = f"{1e6 * thickness:g} um"
-        axis.loglog(flux, [r[3] for r in mine], color=color, label=f"predicted: reverses, {name}")
-        axis.loglog(
-            flux, [r[5] for r in mine], "--", color=color, label=f"predicted: grows, {name}"
-        )
-        axis.loglog(flux, [r[4] for r in mine], "o", color=color, label=f"measured, {name}")
-        axis.loglog(flux, [r[6] for r in mine], "s", color=color)
+        axis.loglog(flux, turn, color=color, label=f"predicted: reverses, {name}")
+        axis.loglog(flux, grow, "--", color=color, label=f"predicted: grows, {name}")
+        axis.loglog(flux, back, "o", color=color, label=f"measured, {name}")
+        axis.loglog(flux, blow, "s", color=color)
     axis.axhline(PAPER_STEP, color="k", linewidth=0.8, label="the paper's step")
     axis.axvline(ATMOSPHERE * TIP_SPEED, color="C3", linewidth=0.8, label="1 atm, tip speed")
     axis.set(xlabel="air density x speed [kg/(m2 s)]", ylabel="time step [s]")
     axis.legend(fontsize=7)
     axis.grid(alpha=0.3)
-    save(drawing, path)
+    return drawing

@@ -9,29 +9,25 @@ it gives the drift a second. A run is left where its energy is above 1000 times 
 it is stopped.
 """
 
-from pathlib import Path
+from itertools import product
 
 import numpy as np
+from matplotlib.figure import Figure
 from membrane import scene
 
-from .common import Model, O, figure, folder, grid, save, write_table
+from .common import Model, O, figure, grid, publish
 
 SPIN = 60.0  # rad/s
 CELLS, LENGTH = 3, 0.04  # cells in a row, and their length [m]
 SECONDS = 10.0
 LEFT = 1000.0  # times the first energy
+MOTIONS = {"taut": "-", "buckling": ":", "damped": "--"}  # lines
 
-Curve = tuple[str, float, np.ndarray, np.ndarray]  # motion, step / estimate, times, errors
+Curve = tuple[np.ndarray, np.ndarray]  # times, errors
 
 HEADER = (
-    "motion",
-    "step / estimate [-]",
-    "step [s]",
-    "simulated [s]",
-    "left early at [s]",
-    "largest error / energy [-]",
-    "largest gain / energy [-]",
-    "drift a second / energy [1/s]",
+    "motion; step / estimate [-]; step [s]; simulated [s]; left early at [s]; "
+    "largest error / energy [-]; largest gain / energy [-]; drift a second / energy [1/s]"
 )
 
 
@@ -47,8 +43,7 @@ def moving_sheet(motion: str) -> Model:
         row, column = np.divmod(np.arange(len(nodes)), CELLS + 1)
         rim = np.isin(row, (0, CELLS)) | np.isin(column, (0, CELLS))
         velocities[rim] = 0
-        for i in np.flatnonzero(rim):
-            model.states[i].blockedDOFs = "xyzXYZ"
+        model.sail.hold(np.flatnonzero(rim))
     else:
         velocities -= np.average(velocities, axis=0, weights=model.masses)
         velocities += np.cross([0.0, 0.0, SPIN], positions)
@@ -90,17 +85,14 @@ def run(quick: bool) -> str:
     """Run all motions at several steps; returns a line of text."""
     shares = (0.9, 0.45) if quick else (0.95, 0.7, 0.5, 0.25, 0.125)
     rows, curves = [], []
-    for motion in ("taut", "buckling", "damped"):
-        for share in shares:
-            times, errors, step, left = history(motion, share, 0.02 if quick else SECONDS)
-            drift = np.nan if left else np.polyfit(times, errors, 1)[0]
-            end = float(times[-1])
-            largest = np.abs(errors).max(), errors.max()
-            rows.append([motion, share, step, end, end if left else "", *largest, drift])
-            curves.append((motion, share, times, errors))
-    out = folder(quick)
-    write_table(out / "drift.csv", HEADER, rows)
-    draw(rows, curves, out / "drift.png")
+    for motion, share in product(MOTIONS, shares):
+        times, errors, step, left = history(motion, share, 0.02 if quick else SECONDS)
+        drift = np.nan if left else np.polyfit(times, errors, 1)[0]
+        end = float(times[-1])
+        largest = np.abs(errors).max(), errors.max()
+        rows.append([motion, share, step, end, end if left else "", *largest, drift])
+        curves.append((times, errors))
+    publish("drift", quick, HEADER, rows, draw(rows, curves))
     parts = []
     for motion, share, _, end, left, error, _, drift in rows:
         if motion != "damped":
@@ -108,41 +100,36 @@ def run(quick: bool) -> str:
             parts.append(f"{motion} at {share:g}: {found}")
     gains = ", ".join(f"{r[6]:.1e} at {r[1]:g}" for r in rows if r[0] == "damped")
     return (
-        f"largest error and drift of the energy over {rows[0][3]:.2g} s, "
-        + "; ".join(parts)
-        + f"; largest gain with zeta = 0.02: {gains}"
+        f"largest error and drift of the energy over {rows[0][3]:.2g} s, {'; '.join(parts)}; "
+        f"largest gain with zeta = 0.02: {gains}"
     )
 
 
-def draw(rows: list[list], curves: list[Curve], path: Path) -> None:
+def draw(rows: list[list], curves: list[Curve]) -> Figure:
     """Errors over time, and the largest over the step."""
-    drawing, axes = figure(columns=2)
-    left, right = axes[0]
+    drawing, (left, right) = figure(columns=2)
     colors = {share: f"C{i}" for i, share in enumerate(dict.fromkeys(row[1] for row in rows))}
-    for row, (motion, share, times, errors) in zip(rows, curves):
-        style = {"taut": "-", "buckling": ":", "damped": "--"}[motion]
-        name = f"{motion}, {share:g}"
-        left.plot(times, errors, style, color=colors[share], linewidth=0.8, label=name)
-        if row[4] != "":
-            left.plot(row[4], LEFT, "x", color=colors[share])
+    for (motion, share, *_, end, _, _, _), curve in zip(rows, curves):
+        style = {"color": colors[share], "linewidth": 0.8, "label": f"{motion}, {share:g}"}
+        left.plot(*curve, MOTIONS[motion], **style)
+        if end != "":
+            left.plot(end, LEFT, "x", color=colors[share])
     left.set(xlabel="time [s] (x: left early)", ylabel="energy / first - 1 [-]", xscale="log")
     left.set_yscale("symlog", linthresh=1e-9)
     left.set_yticks([-1, -1e-4, -1e-8, 0, 1e-8, 1e-4, 1, 1e4])
     left.set_ylim(-10, 1e2 * LEFT)
     left.legend(fontsize=5, ncol=3, title="step / estimate", title_fontsize=6, loc="upper left")
-    for motion, sign in (("taut", "o-"), ("buckling", "s:")):
-        mine = [r for r in rows if r[0] == motion]
-        largest = [min(r[5], LEFT) for r in mine]
-        right.loglog([r[1] for r in mine], largest, sign, label=motion)
-        most = largest[-1] / mine[-1][1] ** 2
-    mine = [r for r in rows if r[0] == "damped"]
-    gains = [max(r[6], 1e-16) for r in mine]
-    right.loglog([r[1] for r in mine], gains, "^--", label="buckling, zeta 0.02: gain")
-    right.loglog([r[1] for r in mine], [most * r[1] ** 2 for r in mine], "k--", label="order 2")
+    shares = np.array(list(colors))
+    largest = np.array([min(row[5], LEFT) for row in rows]).reshape(-1, len(shares))
+    gains = [max(row[6], 1e-16) for row in rows if row[0] == "damped"]
+    for motion, sign, errors in zip(MOTIONS, ("o-", "s:"), largest):
+        right.loglog(shares, errors, sign, label=motion)
+    right.loglog(shares, gains, "^--", label="buckling, zeta 0.02: gain")
+    right.loglog(shares, largest[1, -1] * (shares / shares[-1]) ** 2, "k--", label="order 2")
     right.axvline(1.0, color="C3", label="estimate")
     right.set(xlabel="step / estimate [-]", ylabel="largest error of the energy [-]")
     right.set_title(f"{LEFT:g}: left early", fontsize=8)
-    right.set_xticks(list(colors), [f"{share:g}" for share in colors])
+    right.set_xticks(shares, [f"{share:g}" for share in colors])
     right.minorticks_off()
     right.legend(fontsize=7)
-    save(drawing, path)
+    return drawing

@@ -9,35 +9,25 @@ run. Predicted: the sign of the least side's sum.
 """
 
 from itertools import product
-from pathlib import Path
 
 import membrane as plugin
 import numpy as np
+from matplotlib.figure import Figure
 from membrane import scene
 
-from .common import Model, O, advance_below, bisect, figure, folder, grid, save, write_table
+from .common import Model, O, advance_below, bisect, figure, grid, publish
 
 LENGTH = 0.02
+KINDS = {"uniform": "all triangles flat", "mixed": "between equilateral rows"}
 HEADER = (
-    "sheet",
-    "apex angle [deg]",
-    "poisson [-]",
-    "least side stiffness [N/m]",
-    "lowest eigenvalue / highest [-]",
-    "stable by eigenvalue",
-    "stable in a run",
+    "sheet; apex angle [deg]; poisson [-]; least side stiffness [N/m]; "
+    "lowest eigenvalue / highest [-]; stable by eigenvalue; stable in a run"
 )
 
 
 def height(angle: float) -> float:
     """Height [m] of an isosceles triangle on a base LENGTH with an apex angle [deg]."""
     return 0.5 * LENGTH / np.tan(0.5 * np.radians(angle))
-
-
-def sheet(kind: str, angle: float) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes, triangles of a free sheet: `uniform`, or `mixed` with equilateral rows."""
-    flat, good = height(angle), height(60.0)
-    return grid(5, LENGTH, flat if kind == "uniform" else [good, flat, good, flat, good])
 
 
 def stiffness_matrix(net: plugin.Membrane, nodes: np.ndarray) -> np.ndarray:
@@ -51,18 +41,25 @@ def stiffness_matrix(net: plugin.Membrane, nodes: np.ndarray) -> np.ndarray:
     return k
 
 
-def membrane(
-    kind: str, angle: float, poisson: float
-) -> tuple[np.ndarray, np.ndarray, plugin.Membrane]:
-    """Nodes and triangles of a sheet, and its Membrane, not in the scene."""
-    nodes, triangles = sheet(kind, angle)
-    net = plugin.Membrane(
+def film(nodes: np.ndarray, triangles: np.ndarray, poisson: float) -> plugin.Membrane:
+    """A Membrane of nodes (N, 3) [m] and triangles (T, 3), not in the scene."""
+    return plugin.Membrane(
         material=scene.film(poisson=poisson),
         nodes=nodes.tolist(),
         triangles=triangles.tolist(),
         allowNegativeStiffness=True,
     )
-    return nodes, triangles, net
+
+
+def membrane(
+    kind: str, angle: float, poisson: float
+) -> tuple[np.ndarray, np.ndarray, plugin.Membrane]:
+    """Nodes, triangles and Membrane of a free sheet: `uniform`, or `mixed` with equilateral rows."""
+    flat, good = height(angle), height(60.0)
+    nodes, triangles = grid(
+        5, LENGTH, flat if kind == "uniform" else [good, flat, good, flat, good]
+    )
+    return nodes, triangles, film(nodes, triangles, poisson)
 
 
 def lowest_eigenvalue(net: plugin.Membrane, nodes: np.ndarray) -> float:
@@ -78,32 +75,22 @@ def runs_stably(
     """Whether a tiny perturbation of the sheet in its plane stays bounded."""
     material = scene.film(poisson=poisson)
     model = Model(nodes, triangles, material=material, alpha=1e6, allowNegativeStiffness=True)
-    rng = np.random.default_rng(2)
-    velocities = 1e-7 * rng.normal(size=nodes.shape) * [1, 1, 0]
-    model.place(nodes, velocities)
+    noise = np.random.default_rng(2).normal(size=nodes.shape)
+    model.place(nodes, 1e-7 * noise * [1, 1, 0])
     O.dt = 0.5 * model.forces.criticalTimeStep()
     return advance_below(model, steps, 30 * model.kinetic(), 50)
 
 
 def base_stiffness(angle: float, poisson: float) -> float:
     """Stiffness [N/m] by (5) of the base of an isosceles triangle, apex angle [deg]."""
-    net = plugin.Membrane(
-        material=scene.film(poisson=poisson),
-        nodes=[(0, 0, 0), (LENGTH, 0, 0), (0.5 * LENGTH, height(angle), 0)],
-        triangles=[(0, 1, 2)],
-        allowNegativeStiffness=True,
-    )
-    return net.stiffnesses[0]
+    nodes = np.array([(0, 0, 0), (LENGTH, 0, 0), (0.5 * LENGTH, height(angle), 0)])
+    return film(nodes, np.array([(0, 1, 2)]), poisson).stiffnesses[0]
 
 
 def zero_angle(poisson: float, kind: str = "uniform") -> float:
     """Apex angle [deg] at which a base, alone or beside an equilateral one, has no stiffness."""
     beside = base_stiffness(60.0, poisson) if kind == "mixed" else 0.0
-
-    def negative(angle):
-        return base_stiffness(angle, poisson) + beside < 0
-
-    return bisect(negative, 90.0, 179.0, rounds=30)
+    return bisect(lambda a: base_stiffness(a, poisson) + beside < 0, 90.0, 179.0, rounds=30)
 
 
 def run(quick: bool) -> str:
@@ -111,53 +98,41 @@ def run(quick: bool) -> str:
     angles = np.arange(80.0, 171.0, 30.0 if quick else 7.5)
     ratios = np.linspace(-0.5, 0.5, 3 if quick else 6)
     rows = []
-    for kind, angle, poisson in product(("uniform", "mixed"), angles, ratios):
+    for kind, angle, poisson in product(KINDS, angles, ratios.tolist()):
         nodes, triangles, net = membrane(kind, angle, poisson)
         lowest = lowest_eigenvalue(net, nodes)
-        ran = runs_stably(nodes, triangles, float(poisson))
-        rows.append(
-            [kind, angle, poisson, min(net.stiffnesses), lowest, int(lowest > -1e-12), int(ran)]
-        )
-    curves = {
-        kind: [(nu, zero_angle(float(nu), kind)) for nu in np.linspace(-0.5, 0.5, 21)]
-        for kind in ("uniform", "mixed")
-    }
-    for kind, name in (("uniform", "zero of one triangle"), ("mixed", "zero beside equilateral")):
-        rows += [[name, angle, poisson, 0.0, 0.0, "", ""] for poisson, angle in curves[kind]]
-    out = folder(quick)
-    write_table(out / "negative_stiffness.csv", HEADER, rows)
-    draw(rows, curves, out / "negative_stiffness.png")
-    scanned = [row for row in rows if row[5] != ""]
-    differ = sum(row[5] != row[6] for row in scanned)
-    borne = sum(row[3] < 0 and row[5] for row in scanned)
-    wrong = sum((row[3] >= 0) != row[5] for row in scanned)
-    zeros = [zero_angle(nu, kind) for kind in ("uniform", "mixed") for nu in (0.0, 0.34)]
+        stable = int(lowest > -1e-12), int(runs_stably(nodes, triangles, poisson))
+        rows.append([kind, angle, poisson, min(net.stiffnesses), lowest, *stable])
+    differ = sum(row[5] != row[6] for row in rows)
+    borne = sum(row[3] < 0 and row[5] for row in rows)
+    wrong = sum((row[3] >= 0) != row[5] for row in rows)
+    scanned = len(rows)
+    curves = {k: [(zero_angle(nu, k), nu) for nu in np.linspace(-0.5, 0.5, 21)] for k in KINDS}
+    drawing = draw(rows, curves)
+    for kind, name in zip(KINDS, ("zero of one triangle", "zero beside equilateral")):
+        rows += [[name, *point, 0.0, 0.0, "", ""] for point in curves[kind]]
+    publish("negative_stiffness", quick, HEADER, rows, drawing)
+    zeros = [zero_angle(nu, kind) for kind in KINDS for nu in (0.0, 0.34)]
     return (
         f"the base of one triangle loses its stiffness at an apex of {zeros[0]:.2f} deg (nu = 0), "
         f"{zeros[1]:.2f} deg (nu = 0.34), beside an equilateral one at {zeros[2]:.2f} and "
-        f"{zeros[3]:.2f} deg; of {len(scanned)} sheets {borne} are stable with a negative "
-        f"side; the sign "
-        f"of the least side is wrong in {wrong}; eigenvalue and run disagree in {differ}"
+        f"{zeros[3]:.2f} deg; of {scanned} sheets {borne} are stable with a negative side; the "
+        f"sign of the least side is wrong in {wrong}; eigenvalue and run disagree in {differ}"
     )
 
 
-def draw(rows: list[list], curves: dict[str, list[tuple[float, float]]], path: Path) -> None:
+def draw(rows: list[list], curves: dict[str, list[tuple[float, float]]]) -> Figure:
     """Stable and unstable sheets over apex angle and Poisson's ratio."""
-    drawing, axes = figure(columns=2)
-    for axis, kind in zip(axes[0], ("uniform", "mixed")):
-        for stable, color in ((1, "C0"), (0, "C3")):
-            points = [r for r in rows if r[0] == kind and r[5] == stable]
-            label = "stable" if stable else "unstable"
-            axis.plot([r[1] for r in points], [r[2] for r in points], "s", color=color, label=label)
-        runs = [r for r in rows if r[0] == kind and not r[6]]
-        axis.plot([r[1] for r in runs], [r[2] for r in runs], "kx", label="run grows")
-        axis.plot(
-            [angle for _, angle in curves[kind]],
-            [poisson for poisson, _ in curves[kind]],
-            "k-",
-            label="predicted: stiffness of the base 0",
-        )
-        title = "all triangles flat" if kind == "uniform" else "between equilateral rows"
+    drawing, panels = figure(columns=2)
+    for axis, (kind, title) in zip(panels, KINDS.items()):
+        mine = [row for row in rows if row[0] == kind]
+        for label, sign, points in (
+            ("stable", "C0s", [r[1:3] for r in mine if r[5]]),
+            ("unstable", "C3s", [r[1:3] for r in mine if not r[5]]),
+            ("run grows", "kx", [r[1:3] for r in mine if not r[6]]),
+            ("predicted: stiffness of the base 0", "k-", curves[kind]),
+        ):
+            axis.plot(*np.reshape(points, (-1, 2)).T, sign, label=label)
         axis.set(xlabel="apex angle [deg]", ylabel="Poisson's ratio [-]", title=title)
-    axes[0, 0].legend(fontsize=7)
-    save(drawing, path)
+    panels[0].legend(fontsize=7)
+    return drawing

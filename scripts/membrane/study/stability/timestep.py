@@ -9,33 +9,33 @@ go taut and buckle again and again: there the limit is where the sum of kinetic,
 energy doubles within 600 steps.
 """
 
-from pathlib import Path
+from itertools import product
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 from membrane import scene
 from membrane.mesh import SailMesh, sail_mesh, tip_masses
 from membrane.mesh.fold import fold
 
-from .common import Model, O, bisect, figure, folder, grows, save, write_table
+from .common import Model, O, bisect, figure, grows, publish
 
 TINY, LARGE = 1e-6, 1.0  # m/s
 # Strain of the tethers of the flat sail: at 0 they change between slack and taut at any motion.
 TAUT = 1e-3
-TIP_MASS = 0.36e-3
+TIP_MASS = 0.36e-3  # kg
 HEADER = (
-    "state",
-    "perturbation [m/s]",
-    "refine",
-    "zeta",
-    "beta",
-    "crease law",
-    "tether segments",
-    "tip mass [kg]",
-    "estimate [s]",
-    "measured [s]",
-    "measured/estimate",
+    "state; perturbation [m/s]; refine; zeta; beta; crease law; tether segments; tip mass [kg]; "
+    "estimate [s]; measured [s]; measured/estimate"
 )
+STATES = {
+    "flat": "C0",
+    "taut": "C2",
+    "buckled": "C1",
+    "folded": "C4",
+    "overlapping": "C5",
+}  # colours
+USUAL = {"refine": 1, "zeta": 0.0, "beta": 0.0, "law": "paper", "segments": 4, "tip": TIP_MASS}
 
 
 def sail(
@@ -62,8 +62,7 @@ def sail(
         alphaCrease=1000.0,
         engine={"zeta": zeta, "beta": beta, "crease_law": law},
     )
-    for anchor in mesh.anchors:
-        model.states[anchor].blockedDOFs = "xyzXYZ"
+    model.sail.hold(mesh.anchors)
     return mesh, model
 
 
@@ -96,36 +95,29 @@ def measure(
             return grows(model, positions, velocities, step, 1600 if damped else 500)
         model.place(positions, velocities)
         O.dt = step
-        ledger = model.start_ledger()
-        ledger.dead = False
-        for done in range(60):
+        ledger, first = model.start_ledger(), 0.0
+        for _ in range(60):
             scene.advance(10)
             energy = ledger.total + ledger.crease
-            if done == 0:
-                first = max(energy, ledger.initial)
+            first = first or max(energy, ledger.initial)
             if not energy < 2 * first:
                 return True
         return False
 
-    low = 0.9 * estimate
-    return estimate, bisect(is_above, low, 1.2 * estimate, rounds, widen=3)
+    return estimate, bisect(is_above, 0.9 * estimate, 1.2 * estimate, rounds, widen=3)
 
 
 def cases(quick: bool) -> list[dict[str, Any]]:
     """Cases as dicts: state, speed and parameters of sail()."""
-    found = []
-    for state in ("flat", "taut", "buckled", "folded", "overlapping"):
-        for speed in (TINY, LARGE):
-            found.append({"state": state, "speed": speed})
+    found: list[dict] = [{"state": s, "speed": speed} for s in STATES for speed in (TINY, LARGE)]
     if quick:
         return found[:2] + [{"zeta": 1.0}, {"beta": 30.0, "state": "overlapping"}]
     found += [{"state": "overlapping", "speed": TINY, "beta": b} for b in (30, 300)]
     found += [{"zeta": z} for z in (0.02, 0.1, 0.3, 1.0, 2.0)]
     found += [{"zeta": z, "state": "taut"} for z in (0.02, 1.0)]
-    for law in ("paper", "conservative"):
-        for state in ("flat", "folded", "overlapping"):
-            for beta in (30.0, 300.0):
-                found.append({"state": state, "beta": beta, "law": law, "speed": LARGE})
+    states = "flat", "folded", "overlapping"
+    for law, state, beta in product(("paper", "conservative"), states, (30.0, 300.0)):
+        found.append({"state": state, "beta": beta, "law": law, "speed": LARGE})
     found += [{"state": "overlapping", "beta": b, "law": "paper"} for b in (3e3, 3e4, 3e5, 3e6)]
     found += [{"state": "overlapping", "beta": b, "law": "conservative"} for b in (3e4, 3e6)]
     found += [{"segments": n} for n in (2, 3, 6, 8)]
@@ -138,20 +130,14 @@ def run(quick: bool) -> str:
     """Measure all cases; returns a line of text."""
     rows = []
     for case in cases(quick):
-        options = dict(case)
-        state, speed = options.pop("state", "flat"), options.pop("speed", TINY)
-        mesh, model = sail(turned=state == "overlapping", **options)
-        fine = options.get("refine", 1) > 1
-        rounds = 6 if quick or fine else 7
-        estimate, limit = measure(
-            model, placed(mesh, state), speed, rounds, options.get("zeta", 0.0) > 0
-        )
-        named: dict = {"refine": 1, "zeta": 0.0, "beta": 0.0, "law": "paper", "segments": 4}
-        values = [options.get(k, v) for k, v in {**named, "tip": TIP_MASS}.items()]
-        rows.append([state, speed, *values, estimate, limit, limit / estimate])
-    out = folder(quick)
-    write_table(out / "timestep.csv", HEADER, rows)
-    draw(rows, out / "timestep.png")
+        options = {"state": "flat", "speed": TINY, **USUAL, **case}
+        state, speed, *values = options.values()
+        mesh, model = sail(*values, turned=state == "overlapping")
+        rounds = 6 if quick or options["refine"] > 1 else 7
+        damped = options["zeta"] > 0
+        estimate, limit = measure(model, placed(mesh, state), speed, rounds, damped)
+        rows.append([*options.values(), estimate, limit, limit / estimate])
+    publish("timestep", quick, HEADER, rows, draw(rows))
     ratios = np.array([row[-1] for row in rows])
     flat = [r[-1] for r in rows if r[0] == "flat" and r[1] == TINY]
     low = rows[int(np.argmin(ratios))]
@@ -162,26 +148,22 @@ def run(quick: bool) -> str:
     )
 
 
-def draw(rows: list[list], path: Path) -> None:
+def draw(rows: list[list]) -> Figure:
     """Measured over estimated step for all cases."""
-    drawing, axes = figure(height=0.17 * len(rows) + 1.2, width=8)
-    axis = axes[0, 0]
-    names = []
-    for i, row in enumerate(rows):
-        ratio, most = row[-1], 1.6
-        color = {"flat": "C0", "taut": "C2", "buckled": "C1", "folded": "C4"}.get(row[0], "C5")
-        axis.plot(min(ratio, most), i, ">" if ratio > most else "o", color=color, markersize=4)
+    drawing, (axis,) = figure(height=0.17 * len(rows) + 1.2, width=8)
+    names, most = [], 1.6
+    for i, (state, speed, refine, zeta, beta, law, segments, tip, *_, ratio) in enumerate(rows):
+        sign = ">" if ratio > most else "o"
+        axis.plot(min(ratio, most), i, sign, color=STATES[state], markersize=4)
         names.append(
-            f"{row[0]}, {row[1]:g} m/s, refine {row[2]}, ζ {row[3]:g}, β {row[4]:g} {row[5]}, "
-            f"{row[6]} segments, tip {1e3 * row[7]:g} g"
+            f"{state}, {speed:g} m/s, refine {refine}, ζ {zeta:g}, β {beta:g} {law}, "
+            f"{segments} segments, tip {1e3 * tip:g} g"
         )
     axis.axvline(1.0, color="k", label="estimate = limit")
     axis.axvspan(1.0, 1 / 0.95, color="C2", alpha=0.2, label="estimate within 5 % below")
     axis.set_yticks(range(len(rows)), names, fontsize=6)
-    axis.set(
-        xlabel="measured limit / estimate [-] (> : 1.6 or more, or none found)",
-        ylim=(len(rows), -1),
-    )
+    text = "measured limit / estimate [-] (> : 1.6 or more, or none found)"
+    axis.set(xlabel=text, ylim=(len(rows), -1))
     axis.legend(fontsize=7, loc="lower right")
     axis.grid(alpha=0.3, axis="x")
-    save(drawing, path)
+    return drawing
