@@ -210,7 +210,7 @@ TWO_TRIANGLES = ((0, 1, 2), (1, 0, 3))
 
 
 def publish(name: str, quick: bool, header: str, rows: Iterable[Sequence], drawing: Figure) -> None:
-    """Write a topic's table and picture into reference/stability/, or with `quick` build/stability/.
+    """Write a topic's table and picture into reference/stability/, `quick` build/stability/.
 
     `header` names the columns, "; " between two, of `rows` of numbers and words: NAME.csv. Each
     file is written whole or not at all; the picture is without the date in it.

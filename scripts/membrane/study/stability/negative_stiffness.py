@@ -54,7 +54,7 @@ def film(nodes: np.ndarray, triangles: np.ndarray, poisson: float) -> plugin.Mem
 def membrane(
     kind: str, angle: float, poisson: float
 ) -> tuple[np.ndarray, np.ndarray, plugin.Membrane]:
-    """Nodes, triangles and Membrane of a free sheet: `uniform`, or `mixed` with equilateral rows."""
+    """Nodes, triangles, Membrane of a free sheet: `uniform`, or `mixed` with equilateral rows."""
     flat, good = height(angle), height(60.0)
     nodes, triangles = grid(
         5, LENGTH, flat if kind == "uniform" else [good, flat, good, flat, good]

@@ -5,10 +5,11 @@ Each module has `checks(full)`, which returns a list of Check; without `full` on
 seconds. Run them by scripts/verify.py.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from math import isfinite
 
+import numpy as np
 from membrane.study.text_table import aligned
 
 TARGET, AT_MOST, MEASURED = "target", "at most", "measured"
@@ -18,22 +19,11 @@ TARGET, AT_MOST, MEASURED = "target", "at most", "measured"
 class Check:
     """A number that was measured, and what it is held against.
 
-    Attributes
-    ----------
-    name : str
-        What was measured, unique in its module.
-    measured : float
-    target : float
-        What it should be; its upper bound if `kind` is AT_MOST; its value when last looked at if
-        `kind` is MEASURED.
-    tolerance : float
-        Greatest distance from the target, in the same unit; above the target if AT_MOST.
-    source : str
-        Where the target comes from, or why the tolerance is what it is.
-    unit : str
-    kind : str
-        TARGET: it must meet the target. AT_MOST: it must not exceed it. MEASURED: the number is
-        what it is, and the tolerance only tells when it changes.
+    `name` says what was measured, unique in its module; `source` where the target comes from, or
+    why the tolerance is what it is. `tolerance`, >= 0, is the greatest distance from the target, in
+    the same unit. `kind` is TARGET: the number must meet the target; AT_MOST: it must not exceed
+    it by more than the tolerance; or MEASURED: the target is its value when last looked at, and
+    the tolerance only tells when it changes.
     """
 
     name: str
@@ -54,18 +44,15 @@ class Check:
     def holds(self) -> bool:
         """Whether the number is as it should be; never for one that is not finite."""
         distance = self.measured - self.target
-        if self.kind != AT_MOST:
-            distance = abs(distance)
+        distance = distance if self.kind == AT_MOST else abs(distance)
         return isfinite(self.measured) and bool(distance <= self.tolerance)
 
     def as_dict(self) -> dict:
         """All attributes and `holds`, ready for JSON; a number that is not finite becomes None."""
-        numbers = {
-            name: float(value) if isfinite(value) else None
-            for name, value in asdict(self).items()
-            if name in ("measured", "target", "tolerance")
-        }
-        return {**asdict(self), **numbers, "holds": self.holds}
+        found = asdict(self)
+        for name in ("measured", "target", "tolerance"):
+            found[name] = float(found[name]) if isfinite(found[name]) else None
+        return {**found, "holds": self.holds}
 
 
 def at_most(name: str, measured: float, most: float, source: str, unit: str = "-") -> Check:
@@ -78,6 +65,11 @@ def recorded(
 ) -> Check:
     """A Check that records `value`, and fails only if it is off its `last` one by `tolerance`."""
     return Check(name, value, last, tolerance, source, unit, MEASURED)
+
+
+def order(errors: Sequence[float] | np.ndarray) -> float:
+    """Order of convergence [-] from the last two of `errors`, between which a size is halved."""
+    return float(np.log2(errors[-2] / errors[-1]))
 
 
 def table(module: str, found: Iterable[Check]) -> list[str]:
