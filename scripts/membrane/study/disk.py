@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from yade.wrapper import Omega
 
 from .. import scene
+from .verification import order
 from .verification.disk_mesh import disk_mesh
 from .verification.spinning import OMEGA, disk_frequency, frequencies2, spin, spinning_net
 from ..view import plots
@@ -70,8 +71,3 @@ def draw(errors: np.ndarray, run: tuple, path: Path) -> None:
     meaning = "(nodal diameters, nodal circles); heights are enlarged, at one instant"
     figure.text(0.72, 0.1, meaning, ha="center", color="0.35", fontsize=9)
     plots.save(figure, path)
-
-
-def order(error: np.ndarray) -> float:
-    """Order of convergence, from the errors (R,) of the two finest meshes."""
-    return float(np.log2(error[-2] / error[-1]))
