@@ -27,15 +27,7 @@ CLEAR = 9  # of a label from other points [pixels]
 
 
 def draw(points: list, path: Path | str) -> Figure:
-    """Draw the three questions side by side.
-
-    Parameters
-    ----------
-    points : list of Point
-        Of scripts/chart.py.
-    path : path
-        Picture to write.
-    """
+    """Draw the three questions side by side, from each Point of scripts/chart.py, to `path`."""
     figure = Figure(figsize=(10.5, 4.8), dpi=150)
     figure.subplots_adjust(left=0.07, right=0.99, bottom=0.26, top=0.94, wspace=0.3)
     panels = dict(zip(TITLES, figure.subplots(1, len(TITLES))))

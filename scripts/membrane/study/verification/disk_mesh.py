@@ -14,21 +14,11 @@ MAP_STEPS = 400
 def disk_mesh(cells: int, even: bool = True) -> tuple[np.ndarray, np.ndarray]:
     """A hexagon of equilateral triangles, bent to a disk of radius 1 m.
 
-    Parameters
-    ----------
-    cells : int
-        From the centre to the edge.
-    even : bool
-        True: bent by the conformal map, which keeps the angles; only the two triangles at each of
-        the hexagon's corners, small ones, are far from equilateral. False: ring k gets its 6 k
-        nodes at even distances on a circle of radius k/cells, and most triangles are sheared.
-
-    Returns
-    -------
-    nodes : (N, 3) float
-        [m], flat, about the origin.
-    triangles : (T, 3) int
-        Counter-clockwise.
+    `cells`, >= 1, from the centre to the edge. `even`: bent by the conformal map, which keeps the
+    angles; only the two triangles at each of the hexagon's corners, small ones, are far from
+    equilateral. Else ring k gets its 6 k nodes at even distances on a circle of radius k/cells,
+    and most triangles are sheared. Returns nodes (N, 3) [m], flat, about the origin, and triangles
+    (T, 3), counter-clockwise.
     """
     reach = np.arange(-cells, cells + 1)
     i, j = (axis.ravel() for axis in np.meshgrid(reach, reach, indexing="ij"))
@@ -104,18 +94,8 @@ def triangle_stress(
 
     Each triangle has three springs, its shares of the sides; with tension f, length L and unit
     vector n of each, the stress is the sum of f L n n over the three, divided by the volume.
-
-    Parameters
-    ----------
-    nodes : (N, 3) float
-        Present positions [m].
-    triangles : (T, 3) int
-    shares : (T, 3) float
-        From `side_stiffness` [N/m].
-    rest : (N, 3) float
-        Rest positions [m].
-    thickness : float
-        [m]
+    `nodes` and `rest` (N, 3) are present and rest positions [m], `shares` (T, 3) [N/m] from
+    `side_stiffness`; `thickness` in m.
     """
     span = (np.roll(nodes[triangles], -1, axis=1) - nodes[triangles])[:, :, :2]
     rest_span = np.roll(rest[triangles], -1, axis=1) - rest[triangles]

@@ -86,8 +86,9 @@ def string_flap(mode: int, hub: float) -> float:
 
 def disk_stress(r: float | np.ndarray, poisson: float) -> np.ndarray:
     """Radial and hoop stress (..., 2) of a free spinning disk over rho Omega2 a2, at r over a."""
-    slopes = np.array([3 + poisson, 1 + 3 * poisson])  # of radial and hoop stress
-    return (3 + poisson - slopes * np.asarray(r)[..., None] ** 2) / 8
+    radial = (3 + poisson) * (1 - r**2)
+    hoop = (3 + poisson) - (1 + 3 * poisson) * r**2
+    return np.stack([radial, hoop], axis=-1) / 8
 
 
 def disk_frequency(diameters: int, circles: int, poisson: float) -> float:

@@ -17,18 +17,8 @@ from . import deployment
 class Variant:
     """What is changed, and what is left out.
 
-    Attributes
-    ----------
-    changes : dict
-        Of SailParameters.
-    duration : float
-        Of its run [s].
-    rests : bool
-        Whether the sail rests elsewhere so, and must be spun up anew.
-    ledger : bool
-        Keep the ledger.
-    contact : bool
-        Keep the collider.
+    `changes` of SailParameters; `duration` of its run [s]; whether the sail `rests` elsewhere so,
+    and must be spun up anew; whether the `ledger` is kept, and the collider, for `contact`.
     """
 
     changes: dict = field(default_factory=dict)
@@ -48,13 +38,7 @@ class Variant:
         return deployment.equilibrium(replace(rested, path="fused"))
 
     def begin(self, positions: np.ndarray | None = None) -> tuple[Sail, scene.MembraneScene]:
-        """Release the sail from `positions` (N, 3) [m], by default its `start`.
-
-        Returns
-        -------
-        sail : Sail
-        sail : MembraneScene
-        """
+        """Release the sail from `positions` (N, 3) [m], by default its `start`."""
         start = self.start() if positions is None else positions
         built = deployment.begin(self.parameters(), start, self.ledger)
         if not self.contact:
