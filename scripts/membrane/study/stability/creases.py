@@ -160,8 +160,8 @@ def creases_by_hand(
 
     def put():
         x = built.last_positions()
-        nodal, *worst = forces_by_hand(x, creases, -mesh.crease_signs, rest, beta, lengths)
-        seen.append(tuple(worst))
+        nodal, largest, lowest = forces_by_hand(x, creases, -mesh.crease_signs, rest, beta, lengths)
+        seen.append((largest, lowest))
         for i, force in zip(built.membrane.bodyIds, nodal.tolist()):
             O.forces.addF(i, force)
 
@@ -436,7 +436,8 @@ def measure_sail(quick: bool, rows: list[list]) -> tuple[Runs, dict[Case, np.nda
 def measure_law(quick: bool, rows: list[list]) -> Curves:
     """Angles (S,) [rad] and forces (S,) [N] by law and theta0."""
     angles = np.linspace(-0.499, 1.499, 25 if quick else 81) * np.pi
-    angles, curves = np.sort(np.append(angles, [-1e-6, 1e-6])), {}
+    angles = np.sort(np.append(angles, [-1e-6, 1e-6]))
+    curves: Curves = {}
     for law, theta0 in product(LAWS, (0.0, 0.5 * np.pi)):
         curves[law, theta0] = angles, force_and_energy(law, theta0, angles)[0]
         values = {"force on C [N]": curves[law, theta0][1]}
@@ -466,7 +467,8 @@ def measure_cut(quick: bool, rows: list[list]) -> tuple[Curves, Curves]:
     """Angles, forces and energies by law and theta0 around the cut; and free pairs by law."""
     angles = np.linspace(1.2, 1.8, 13 if quick else 61) * np.pi
     angles = np.sort(np.append(angles, 1.5 * np.pi + np.array([-1e-6, 1e-6])))
-    curves, turns = {}, {}
+    curves: Curves = {}
+    turns: Curves = {}
     for law in LAWS:
         for theta0 in (0.0, 0.5 * np.pi):
             force, energy = force_and_energy(law, theta0, angles)
@@ -492,7 +494,8 @@ def measure_range(quick: bool, rows: list[list]) -> Ranges:
 
 def measure_momentum(quick: bool, rows: list[list]) -> Curves:
     """What `momentum` returns, by law, ratio of heights and zeta."""
-    ratios, spins = (1.0, 2.0) if quick else (1.0, 1.25, 1.5, 2.0, 3.0), {}
+    ratios = (1.0, 2.0) if quick else (1.0, 1.25, 1.5, 2.0, 3.0)
+    spins: Curves = {}
     for law, ratio, zeta in product(LAWS, ratios, (0.0, 0.1)):
         spins[law, ratio, zeta] = _, spin = momentum(law, ratio, zeta, 0.01 if quick else 0.1)
         values = {"largest spin rate that came from nothing [rad/s]": spin.max()}

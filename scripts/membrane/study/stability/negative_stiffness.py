@@ -126,12 +126,13 @@ def draw(rows: list[list], curves: dict[str, list[tuple[float, float]]]) -> Figu
     drawing, panels = figure(columns=2)
     for axis, (kind, title) in zip(panels, KINDS.items()):
         mine = [row for row in rows if row[0] == kind]
-        for label, sign, points in (
+        series: tuple[tuple[str, str, list], ...] = (
             ("stable", "C0s", [r[1:3] for r in mine if r[5]]),
             ("unstable", "C3s", [r[1:3] for r in mine if not r[5]]),
             ("run grows", "kx", [r[1:3] for r in mine if not r[6]]),
             ("predicted: stiffness of the base 0", "k-", curves[kind]),
-        ):
+        )
+        for label, sign, points in series:
             axis.plot(*np.reshape(points, (-1, 2)).T, sign, label=label)
         axis.set(xlabel="apex angle [deg]", ylabel="Poisson's ratio [-]", title=title)
     panels[0].legend(fontsize=7)

@@ -128,11 +128,12 @@ def cases(quick: bool) -> list[dict[str, Any]]:
 
 def run(quick: bool) -> str:
     """Measure all cases; returns a line of text."""
-    rows = []
+    rows: list[list] = []
     for case in cases(quick):
-        options = {"state": "flat", "speed": TINY, **USUAL, **case}
-        state, speed, *values = options.values()
-        mesh, model = sail(*values, turned=state == "overlapping")
+        options: dict[str, Any] = {"state": "flat", "speed": TINY, **USUAL, **case}
+        state, speed = options["state"], options["speed"]
+        values = {name: options[name] for name in USUAL}
+        mesh, model = sail(**values, turned=state == "overlapping")
         rounds = 6 if quick or options["refine"] > 1 else 7
         damped = options["zeta"] > 0
         estimate, limit = measure(model, placed(mesh, state), speed, rounds, damped)

@@ -262,13 +262,13 @@ def ledger_checks() -> list[Check]:
         def most(values: np.ndarray, scale: np.ndarray) -> float:
             return float(np.abs(values[rows]).max() / np.abs(scale[rows]).max())
 
-        energy, rest = most(run.balance, run.spool_work), most(run.unexplained, run.spool_work)
+        energy, beyond = most(run.balance, run.spool_work), most(run.unexplained, run.spool_work)
         angular = most(run.angular_defect, run.angular_momentum)
         title = f"{LEDGER_TIME:g} s at dt = {dt:g} s: "
         name = title + "energy imbalance over spool work"
         found.append(recorded(name, energy, last, 0.5 * last, kink))
         name = title + "imbalance beyond the error at kinks over spool work"
-        found.append(at_most(name, rest, 1e-6, "every energy and work is accounted for"))
+        found.append(at_most(name, beyond, 1e-6, "every energy and work is accounted for"))
         name = title + "angular momentum beyond the impulse"
         found.append(at_most(name, angular, 1e-12, "leapfrog under its own torque"))
     missing = [abs(early(1, dt).balance[-1]) for dt in STEPS]

@@ -488,7 +488,7 @@ def energy_differences(sail: StandingSail, state: State) -> dict[str, tuple[floa
     kinks = crease_kinks(sail, state)
     for theta0 in (0.0, TURNED):
         law = sail.engine(beta=BETA, gamma=GAMMA, theta0=theta0, creaseLaw="conservative")
-        about = law, law.creaseEnergy, CREASE_STEP, kinks
+        about: tuple = law, law.creaseEnergy, CREASE_STEP, kinks
         found[f"creases, conservative, theta0 {theta0:g}"] = energy_difference(sail, state, *about)
     field = membrane.CentrifugalField(membrane=sail.net, omega=OMEGA)
     about = field, field.energy, FIELD_STEP, np.array([]), 100
@@ -529,8 +529,11 @@ def bound_checks(full: bool, effects: Worst, seen: Counter, states: int) -> list
 
 def checks(full: bool) -> list[Check]:
     """Checks of all forces, over all sails and states; `full`, three seeds and a refined sail."""
-    agreement, effects, energies = (defaultdict(list) for _ in range(3))
-    laws, seen, states = {}, Counter(), 0
+    agreement: Worst = defaultdict(list)
+    effects: Worst = defaultdict(list)
+    energies: Worst = defaultdict(list)
+    laws, states = {}, 0
+    seen: Counter = Counter()
     for name, (options, seeds) in (FULL if full else FAST).items():
         sail = StandingSail(**options)
         laws[name] = law_difference(sail)

@@ -411,7 +411,7 @@ def triangle_checks() -> list[Check]:
 
 def sheet_checks(refines: Sequence[int]) -> list[Check]:
     """Moduli of sheets and petals, recorded."""
-    sheets = [(name, sheet, name) for name, (sheet, *_) in SHEETS.items()]
+    sheets: list[tuple] = [(name, sheet, name) for name, (sheet, *_) in SHEETS.items()]
     sheets += [(f"petal, refine {n}", petal(n)[:2], n) for n in refines]
     found = []
     for name, sheet, key in sheets:
