@@ -363,3 +363,80 @@ def drag_forces(positions, velocities, triangles, air_density):
         flow = np.abs(dot(normals, velocity)) * areas  # S_n |V|
         total += add_up(len(positions), nodes, -(air_density / 6.0 * flow)[:, None] * velocity)
     return total
+
+
+# --- film of plane stress that wrinkles (model.md, "One film on any mesh") ---
+
+
+def film_strain(positions, rest, triangles):
+    """Deformation gradients (T, 3, 2), Green strains (T, 2, 2) and shape gradients (T, 3, 2) [1/m].
+
+    positions, rest (N, 3) [m]; in axes of each triangle's own, x along the side from its second
+    corner to its third.
+    """
+    at_rest = rest[triangles]
+    along = at_rest[:, 2] - at_rest[:, 1]
+    along /= norm(along)[:, None]
+    normal, _ = triangle_normals(rest, triangles)
+    axes = np.stack([along, np.cross(normal, along)], axis=2)
+    flat = np.einsum("tck,tki->tci", at_rest - at_rest[:, :1], axes)
+    edges = flat[:, 1:] - flat[:, :1]
+    inverse = np.linalg.inv(edges)
+    shapes = np.concatenate([-inverse.sum(axis=2)[:, None], inverse.transpose(0, 2, 1)], axis=1)
+    gradient = np.einsum("tck,tci->tki", positions[triangles], shapes)
+    strain = 0.5 * (np.einsum("tki,tkj->tij", gradient, gradient) - np.eye(2))
+    return gradient, strain, shapes
+
+
+def film_stress(strain, young, poisson, buckling):
+    """Stress (T, 2, 2) [Pa], energy density (T,) [J/m3] and state (T,) of Green strains (T, 2, 2).
+
+    The state is 0 taut, 1 wrinkled, 2 slack; `buckling` is the stress [Pa] that the film bears in
+    compression at most. By eigenvectors.
+    """
+    values, vectors = np.linalg.eigh(strain)
+    second, first = values.T
+    limit = buckling / young
+    taut = second >= -poisson * first - (1 - poisson**2) * limit
+    slack = ~taut & (first < -(1 - poisson) * limit)
+    plane = young / (1 - poisson**2)
+    major = np.where(taut, plane * (first + poisson * second), young * first - poisson * buckling)
+    minor = np.where(taut, plane * (second + poisson * first), -buckling)
+    major = np.where(slack, -buckling, major)
+    across = np.where(taut, second, -poisson * first - (1 - poisson**2) * limit)
+    along = np.where(slack, -(1 - poisson) * limit, first)
+    across = np.where(slack, -(1 - poisson) * limit, across)
+    # Elastic energy of what wrinkles leave, and the work of the buckling stress in them.
+    energy = 0.5 * plane * (along**2 + across**2 + 2 * poisson * along * across)
+    energy += buckling * (along - first + across - second)
+    principal = np.stack([minor, major], axis=1)
+    stress = np.einsum("tip,tp,tjp->tij", vectors, principal, vectors)
+    return stress, energy, np.where(taut, 0, np.where(slack, 2, 1))
+
+
+def film_forces(positions, rest, triangles, young, poisson, thickness, buckling):
+    """Forces (N, 3) [N] and energy [J] of the film; arguments as of film_stress."""
+    gradient, strain, shapes = film_strain(positions, rest, triangles)
+    stress, energy, _ = film_stress(strain, young, poisson, buckling)
+    _, areas = triangle_normals(rest, triangles)
+    volumes = thickness * areas
+    return film_nodal(len(rest), triangles, gradient, stress, shapes, volumes), energy @ volumes
+
+
+def film_damping(positions, velocities, rest, triangles, young, poisson, thickness, buckling, time):
+    """Forces (N, 3) [N] of a damping time [s]: stress of the strain that far ahead, less stress."""
+    gradient, strain, shapes = film_strain(positions, rest, triangles)
+    turning = np.einsum("tck,tci->tki", velocities[triangles], shapes)
+    rate = np.einsum("tki,tkj->tij", gradient, turning)
+    ahead = strain + 0.5 * time * (rate + rate.transpose(0, 2, 1))
+    stress, _, _ = film_stress(ahead, young, poisson, buckling)
+    now, _, _ = film_stress(strain, young, poisson, buckling)
+    _, areas = triangle_normals(rest, triangles)
+    return film_nodal(len(rest), triangles, gradient, stress - now, shapes, thickness * areas)
+
+
+def film_nodal(count, triangles, gradient, stress, shapes, volumes):
+    """Forces (count, 3) [N] of second Piola-Kirchhoff stresses (T, 2, 2) [Pa]."""
+    first_kind = np.einsum("tki,tij->tkj", gradient, stress)
+    corners = -volumes[:, None, None] * np.einsum("tkj,tcj->tck", first_kind, shapes)
+    return add_up(count, triangles.ravel(), corners.reshape(-1, 3))

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "pkg/membrane/kernels/CreaseKernel.hpp"
+#include "pkg/membrane/kernels/FilmKernel.hpp"
 #include "pkg/membrane/kernels/SideKernel.hpp"
 #include "shapes.hpp"
 #include <Eigen/Eigenvalues>
@@ -28,6 +29,13 @@ inline MatrixXd stiffness(const LinearForces& forces) {
         for (int axis = 0; axis < 3; ++axis)
             addSquare(k, s.lateral, {{s.a, -Vector3d::Unit(axis)}, {s.b, Vector3d::Unit(axis)}});
     }
+    for (const auto& t : forces.triangles) {
+        for (const auto& g : t.gradient) addSquare(k, 1., {{t.node[0], g[0]}, {t.node[1], g[1]}, {t.node[2], g[2]}});
+        for (int i = 0; i < 3; ++i)
+            for (int axis = 0; axis < 3; ++axis)
+                addSquare(k, t.lateral[i],
+                          {{t.node[(i + 1) % 3], -Vector3d::Unit(axis)}, {t.node[(i + 2) % 3], Vector3d::Unit(axis)}});
+    }
     for (const auto& c : forces.creases) {
         const auto corners = [&c](const Vector3d& ofC, const Vector3d& ofD) {
             return std::vector<std::pair<int, Vector3d>>{{c.a, -(1. - c.footC) * ofC - (1. - c.footD) * ofD},
@@ -48,6 +56,9 @@ inline MatrixXd damping(const LinearForces& forces) {
     const std::size_t size = 3 * forces.inverseRoot.size();
     MatrixXd c = MatrixXd::Zero(size, size);
     for (const auto& s : forces.sides) addSquare(c, s.damping, {{s.a, -s.direction}, {s.b, s.direction}});
+    for (const auto& t : forces.triangles)
+        for (const auto& g : t.gradient)
+            addSquare(c, t.time, {{t.node[0], g[0]}, {t.node[1], g[1]}, {t.node[2], g[2]}});
     for (std::size_t i = 0; i < forces.drag.size(); ++i) c.diagonal().segment<3>(3 * i).array() += forces.drag[i];
     return c;
 }
@@ -87,14 +98,21 @@ struct Sheet {
     membrane::Points positions;
     std::vector<double> masses, damping, drag;
     membrane::CreaseLaw crease;
+    membrane::MeshInput in;
+    membrane::FilmLaw film; ///< of every other sheet
 
     /// \param crumple how far nodes are from the plane [m];  \param rate of the sides' damping and of drag [1/s]
     Sheet(unsigned seed, double crumple, double rate, double bending) {
         shapes::Random random(seed);
-        membrane::MeshInput in = shapes::sheet(4, 3, 0.01, seed, true);
+        in = shapes::sheet(4, 3, 0.01, seed, true);
         in.allowNegativeStiffness = true;
         in.pointMasses.assign(in.nodes.size(), 0.);
         in.pointMasses[7] = 0.1; // beside 1e-3 kg
+        in.planeStress = seed % 2 == 0;
+        if (in.planeStress) {
+            film.young = in.young, film.poisson = in.poisson, film.thickness = in.thickness;
+            film.time = rate * 1e-9;
+        }
         rest = restState(in);
         positions = in.nodes;
         masses = rest.masses;
@@ -108,7 +126,11 @@ struct Sheet {
         masses[0] = masses[11] = 0.; // held
     }
 
-    LinearForces forces() const { return linearForces(*this); }
+    LinearForces forces() const {
+        LinearForces all = linearForces(*this);
+        if (in.planeStress) membrane::FilmForce(in.nodes, in.triangles, film).addTo(all, positions, positions);
+        return all;
+    }
 };
 
 /// Calls a test with sheets in which stiffness, damping or creases decide the step.

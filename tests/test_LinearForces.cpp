@@ -51,7 +51,7 @@ TEST(LinearForces, ProductsAreAdded) {
 }
 
 TEST(LinearForces, AreDampedIfAnythingIs) {
-    dense::Sheet sheet(2, 0., 10., 0.);
+    dense::Sheet sheet(3, 0., 10., 0.); // of springs
     EXPECT_TRUE(sheet.forces().damped);
     sheet.drag.clear();
     EXPECT_TRUE(sheet.forces().damped);
@@ -59,6 +59,10 @@ TEST(LinearForces, AreDampedIfAnythingIs) {
     EXPECT_FALSE(sheet.forces().damped);
     sheet.drag.assign(sheet.masses.size(), 0.);
     sheet.drag.back() = 1e-9;
+    EXPECT_TRUE(sheet.forces().damped);
+    sheet = dense::Sheet(2, 0., 0., 0.); // of plane stress
+    EXPECT_FALSE(sheet.forces().damped);
+    sheet.film.time = 1e-9;
     EXPECT_TRUE(sheet.forces().damped);
 }
 

@@ -15,7 +15,7 @@ public:
     // clang-format off
     YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(GlExtra_Membrane, GlExtraDrawer,
         "Draws membranes in YADE's 3D view: triangles coloured by strain, creases by angle. The strain of a triangle is the largest of its three "
-        "sides', length over rest length - 1; colours are dull where one of the sides is buckled. Append it to yade.qt.Renderer().extraDrawers, or let "
+        "sides', length over rest length - 1; colours are dull where one of the sides is buckled or a film of plane stress wrinkled or slack. Append it to yade.qt.Renderer().extraDrawers, or let "
         "membrane.window.show do so. What it draws is up to date in every picture, also in the middle of a run with a large "
         ":yref:`exchangePeriod<MembraneIntegrator.exchangePeriod>`. Where it fails it says why, once, and is dead from then on.",
         ((shared_ptr<Membrane>, membrane, , , "Membrane to draw; none: all that have a MembraneForceEngine in the scene."))

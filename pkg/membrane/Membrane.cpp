@@ -35,6 +35,36 @@ template <class T> void takeArray(boost::python::dict& keywords, const char* nam
         keywords[name].del();
 }
 
+/// A triangle of a film of plane stress at some places of the nodes.
+struct FilmTriangle {
+    ::membrane::FilmRest rest;
+    ::membrane::FilmSides atRest, sides;
+    Vector3r grown; ///< l² - L² of the sides [m²]
+
+    FilmTriangle(const Membrane& of, const Vector3i& t, const ::membrane::Points& x)
+        : rest(of.nodes[t[0]], of.nodes[t[1]], of.nodes[t[2]]), atRest(of.nodes[t[0]], of.nodes[t[1]], of.nodes[t[2]]),
+          sides(x[t[0]], x[t[1]], x[t[2]]), grown(sides.grown(rest)) {}
+
+    /// Unit vector along the material line of the first principal strain.
+    Vector3r alongFirst(const ::membrane::FilmStrain& strain) const {
+        const Real angle = 0.5 * std::atan2(strain.shear, strain.normal); // from side 0, the x axis at rest
+        const Vector3r x = atRest.side[0].normalized();
+        const Vector3r z = atRest.side[0].cross(atRest.side[1]).normalized();
+        const Vector3r along = std::cos(angle) * x + std::sin(angle) * z.cross(x);
+        // along = p side 0 + q side 1, which the film carries along
+        const Vector3r p = atRest.side[1].cross(z), q = z.cross(atRest.side[0]);
+        const Real size = p.dot(atRest.side[0]);
+        return (along.dot(p) / size * sides.side[0] + along.dot(q) / size * sides.side[1]).normalized();
+    }
+};
+
+vector<FilmTriangle> filmTriangles(const Membrane& of, const ::membrane::Points& x) {
+    vector<FilmTriangle> all;
+    all.reserve(of.triangles.size());
+    for (const Vector3i& t : of.triangles) all.emplace_back(of, t, x);
+    return all;
+}
+
 } // namespace
 
 void Membrane::pyHandleCustomCtorArgs(boost::python::tuple&, boost::python::dict& keywords) {
@@ -74,11 +104,39 @@ void Membrane::postLoad(Membrane&) {
     }
     input.cableStiffness = cableStiffness;
     input.cableDensity = cableDensity;
+    if (film != "springs" && film != "plane_stress")
+        throw std::invalid_argument("Membrane: film = " + film + " must be 'springs' or 'plane_stress'");
+    for (const auto& [name, length] : {std::pair<const char*, Real>("bucklingLength", bucklingLength),
+                                       std::pair<const char*, Real>("creaseBucklingLength", creaseBucklingLength)})
+        if (!(length >= 0.) || !std::isfinite(length))
+            throw std::invalid_argument(string("Membrane: ") + name + " = " + std::to_string(length) +
+                                        " m must be finite and >= 0");
+    input.planeStress = film == "plane_stress";
+    const auto stressOf = [&](Real length) {
+        return length > 0. ? ::membrane::bucklingStress(input.young, input.poisson, input.thickness, length) : 0.;
+    };
+    input.buckling = stressOf(bucklingLength);
+    input.bucklingCrease = stressOf(creaseBucklingLength);
     input.alpha = alpha;
     input.alphaCrease = alphaCrease;
     input.allowNegativeStiffness = allowNegativeStiffness;
     rest_ = ::membrane::restState(input);
     if (!bodyIds.empty()) indexBodies();
+}
+
+::membrane::FilmLaw Membrane::filmLaw(Real dampingTime) const {
+    ::membrane::FilmLaw law;
+    law.young = young_;
+    law.poisson = poisson_;
+    law.thickness = thickness_;
+    law.buckling = bucklingStress();
+    law.time = dampingTime;
+    return law;
+}
+
+Real Membrane::bucklingStress() const {
+    return bucklingLength > 0. && young_ > 0. ? ::membrane::bucklingStress(young_, poisson_, thickness_, bucklingLength)
+                                              : 0.;
 }
 
 void Membrane::checkUnchanged() const {
@@ -206,6 +264,7 @@ void Membrane::addInteractions() {
     const shared_ptr<Scene> scene = Omega::instance().getScene();
     const ::membrane::Points x = positions(*scene);
     for (const ::membrane::Side& side : rest_.sides) {
+        if (!rest_.isSpring(side)) continue;
         const shared_ptr<Interaction> link(new Interaction(bodyIds[side.a], bodyIds[side.b]));
         const shared_ptr<MembraneGeom> geom(new MembraneGeom);
         geom->refR1 = geom->refR2 = 0.5 * side.restLength;
@@ -246,7 +305,11 @@ Real Membrane::elasticEnergy() const {
     const ::membrane::Points x = positions(*scene);
     Real energy = 0.;
     for (const ::membrane::Side& s : rest_.sides)
-        energy += ::membrane::sideEnergy((x[s.b] - x[s.a]).norm(), s.stiffness, s.restLength, s.critical);
+        if (rest_.isSpring(s))
+            energy += ::membrane::sideEnergy((x[s.b] - x[s.a]).norm(), s.stiffness, s.restLength, s.critical);
+    if (!rest_.planeStress) return energy;
+    const ::membrane::FilmLaw law = filmLaw();
+    for (const FilmTriangle& t : filmTriangles(*this, x)) energy += ::membrane::filmEnergy(law, t.rest, t.grown);
     return energy;
 }
 
@@ -259,9 +322,70 @@ vector<Real> Membrane::lengths(const boost::python::object& at) const {
 vector<Real> Membrane::tensions(const boost::python::object& at) const {
     const ::membrane::Points x =
         positions(*Omega::instance().getScene(), pointsFrom(at, "Membrane.tensions: positions"));
-    return ofSides(rest_, [&x](const ::membrane::Side& s) -> Real {
-        return ::membrane::sideTension((x[s.b] - x[s.a]).norm(), s.stiffness, s.restLength, s.critical);
+    return tensionsAt(x);
+}
+
+vector<Real> Membrane::tensionsAt(const ::membrane::Points& x) const {
+    vector<Real> tensions = ofSides(rest_, [&](const ::membrane::Side& s) -> Real {
+        const Real length = (x[s.b] - x[s.a]).norm();
+        return rest_.isSpring(s) ? ::membrane::sideTension(length, s.stiffness, s.restLength, s.critical) : 0.;
     });
+    if (!rest_.planeStress) return tensions;
+    const ::membrane::FilmLaw law = filmLaw();
+    const auto all = filmTriangles(*this, x);
+    for (std::size_t i = 0; i < all.size(); ++i) { // those of the triangles, along their sides
+        const Vector3r g = ::membrane::filmGradient(law, all[i].rest, all[i].grown);
+        const Vector3i& t = triangles[i];
+        for (int k = 0; k < 3; ++k)
+            tensions[rest_.sideBetween(t[(k + 1) % 3], t[(k + 2) % 3])] += 2. * g[k] * all[i].sides.side[k].norm();
+    }
+    return tensions;
+}
+
+::membrane::FilmState Membrane::filmState(std::size_t triangle, const ::membrane::Points& x) const {
+    if (!rest_.planeStress) return ::membrane::FilmState::taut;
+    const FilmTriangle t(*this, triangles[triangle], x);
+    return ::membrane::filmState(filmLaw(), ::membrane::filmStrain(t.rest, t.grown));
+}
+
+vector<int> Membrane::filmStates(const boost::python::object& at) const {
+    const ::membrane::Points x =
+        positions(*Omega::instance().getScene(), pointsFrom(at, "Membrane.filmStates: positions"));
+    vector<int> states;
+    for (std::size_t i = 0; i < triangles.size(); ++i) states.push_back(static_cast<int>(filmState(i, x)));
+    return states;
+}
+
+vector<Vector2r> Membrane::filmStresses(const boost::python::object& at) const {
+    requirePlaneStress("filmStresses");
+    const ::membrane::Points x =
+        positions(*Omega::instance().getScene(), pointsFrom(at, "Membrane.filmStresses: positions"));
+    vector<Vector2r> stresses;
+    for (const FilmTriangle& t : filmTriangles(*this, x)) {
+        const ::membrane::FilmStrain strain = ::membrane::filmStrain(t.rest, t.grown);
+        const ::membrane::FilmStress stress = ::membrane::filmStress(filmLaw(), strain);
+        stresses.emplace_back(stress.mean + stress.shear * strain.half, stress.mean - stress.shear * strain.half);
+    }
+    return stresses;
+}
+
+vector<Vector3r> Membrane::wrinkleDirections(const boost::python::object& at) const {
+    requirePlaneStress("wrinkleDirections");
+    const ::membrane::Points x =
+        positions(*Omega::instance().getScene(), pointsFrom(at, "Membrane.wrinkleDirections: positions"));
+    const ::membrane::FilmLaw law = filmLaw();
+    vector<Vector3r> directions;
+    for (const FilmTriangle& t : filmTriangles(*this, x)) {
+        const ::membrane::FilmStrain strain = ::membrane::filmStrain(t.rest, t.grown);
+        const bool wrinkled = ::membrane::filmState(law, strain) == ::membrane::FilmState::wrinkled;
+        directions.push_back(wrinkled ? t.alongFirst(strain) : Vector3r(Vector3r::Zero()));
+    }
+    return directions;
+}
+
+void Membrane::requirePlaneStress(const char* method) const {
+    if (!rest_.planeStress)
+        throw std::invalid_argument(string("Membrane.") + method + ": film = " + film + " must be 'plane_stress'");
 }
 
 boost::python::list Membrane::sidesPy() const {

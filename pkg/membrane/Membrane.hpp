@@ -2,6 +2,7 @@
 #pragma once
 #include "MembraneMat.hpp"
 #include "StepGuard.hpp"
+#include "mechanics/FilmTriangle.hpp"
 #include "mechanics/RestState.hpp"
 #include <core/Body.hpp>
 #include <core/State.hpp>
@@ -33,6 +34,13 @@ public:
     /// `given` if it has a point for each node, the present positions in the scene if it is empty [m].
     ::membrane::Points positions(const Scene& scene, const vector<Vector3r>& given = {}) const;
 
+    /// The film, if it is one of plane stress. \param dampingTime tau [s]
+    ::membrane::FilmLaw filmLaw(Real dampingTime = 0.) const;
+    /// State of a triangle at some places of the nodes [m]; always taut where the film is one of springs.
+    ::membrane::FilmState filmState(std::size_t triangle, const ::membrane::Points& x) const;
+    /// Tensions of the sides [N] at some places of the nodes [m].
+    vector<Real> tensionsAt(const ::membrane::Points& x) const;
+
     vector<int> addBodies(const vector<Vector3r>& at, Real radius);
     vector<int> addBodiesPy(const boost::python::object& at, Real radius);
     void addInteractions();
@@ -48,6 +56,10 @@ public:
     vector<Real> masses() const { return rest_.masses; }
     vector<Real> lengths(const boost::python::object& at) const;
     vector<Real> tensions(const boost::python::object& at) const;
+    vector<int> filmStates(const boost::python::object& at) const;
+    vector<Vector2r> filmStresses(const boost::python::object& at) const;
+    vector<Vector3r> wrinkleDirections(const boost::python::object& at) const;
+    Real bucklingStress() const;
     Real area() const { return rest_.area; }
 
     // clang-format off
@@ -64,8 +76,12 @@ public:
         ((vector<Real>, pointMasses, , Attr::readonly, "Mass added to each node [kg], N values >= 0, or empty."))
         ((Real, cableStiffness, 200., Attr::readonly, "Axial stiffness EA of the cables [N], > 0."))
         ((Real, cableDensity, 2e-4, Attr::readonly, "Mass a length of the cables [kg/m], >= 0."))
-        ((Real, alpha, 100., Attr::readonly, "Buckling parameter alpha of the film [-], >= 0, paper equation (6)."))
-        ((Real, alphaCrease, 100., Attr::readonly, "Buckling parameter alpha_c of sides on creases [-], >= 0."))
+        ((string, film, "springs", Attr::readonly, "'springs': paper equations (3), (5), (6), whose stiffness and buckling depend on the mesh; 'plane_stress': the same film on any mesh, "
+            "with a tension field and the buckling stress of bucklingLength. Then only cables are sides that pull; triangles of any shape are taken."))
+        ((Real, alpha, 100., Attr::readonly, "Buckling parameter alpha of the film [-], >= 0, paper equation (6); of springs, unless bucklingLength is given."))
+        ((Real, alphaCrease, 100., Attr::readonly, "Buckling parameter alpha_c of sides on creases [-], >= 0; of springs, unless creaseBucklingLength is given."))
+        ((Real, bucklingLength, 0., Attr::readonly, "Half-wavelength l_b [m] at which the film buckles, under E pi² h² / (12 (1 - nu²) l_b²), on any mesh; 0: springs by alpha, plane stress bears no compression."))
+        ((Real, creaseBucklingLength, 0., Attr::readonly, "The same of sides on creases [m]; 0: by alphaCrease. Only of springs."))
         ((bool, allowNegativeStiffness, false, Attr::readonly, "Accept flat triangles, to which equation (5) gives a negative stiffness [-]."))
         ((vector<int>, bodyIds, , Attr::readonly, "Body of each node; filled by addBodies."))
         ,
@@ -76,6 +92,13 @@ public:
         .add_property("stiffnesses", &Membrane::stiffnesses, "Stiffness k of each side [N/m], paper equation (5).")
         .add_property("criticalLengths", &Membrane::criticalLengths, "Length l_cr of each side below which it is buckled [m], paper equation (6).")
         .add_property("masses", &Membrane::masses, "Mass of each node [kg], paper equation (4), with cables and point masses.")
+        .add_property("bucklingStress", &Membrane::bucklingStress, "Compression sigma_b that the film bears at most [Pa], of bucklingLength; 0 without it.")
+        .def("filmStates", &Guarded<&Membrane::filmStates>::call, (boost::python::arg("positions") = boost::python::list()), "State of each triangle of a film of plane stress: 0 taut, "
+            "1 wrinkled, 2 slack; at given positions of the N nodes [m], default: the present ones. Springs: all 0.")
+        .def("filmStresses", &Guarded<&Membrane::filmStresses>::call, (boost::python::arg("positions") = boost::python::list()), "Principal stresses (first, second) of each triangle of a film of plane "
+            "stress [Pa], second Piola-Kirchhoff; positions as of filmStates.")
+        .def("wrinkleDirections", &Guarded<&Membrane::wrinkleDirections>::call, (boost::python::arg("positions") = boost::python::list()), "Unit vector along the first principal stress of each triangle, "
+            "along which wrinkles run; 0 unless wrinkled. Positions as of filmStates.")
         .add_property("area", &Membrane::area, "Area of the film [m²].")
         .def("addBodies", &Guarded<&Membrane::addBodiesPy>::call, (boost::python::arg("positions") = boost::python::list(), boost::python::arg("radius") = 1e-3),
             "Add one sphere a node to the scene, without bound and with blocked rotations; returns the ids.\n\n"
@@ -100,6 +123,7 @@ private:
     vector<int> nodesByBody_; ///< nodes in the order of their bodies' ids; empty if that is their own order
 
     void indexBodies();
+    void requirePlaneStress(const char* method) const;
     /// The first node whose body is not in the scene; -1: all are there.
     int nodeWithoutBody(const Scene& scene) const;
 };

@@ -9,9 +9,11 @@
 #include "MembraneLedger.hpp"
 #include "kernels/CreaseKernel.hpp"
 #include "kernels/DragKernel.hpp"
+#include "kernels/FilmKernel.hpp"
 #include "kernels/SideKernel.hpp"
 #include "mechanics/CriticalTimeStep.hpp"
 #include "mechanics/Damping.hpp"
+#include "mechanics/SideForce.hpp"
 #include <cmath>
 #include <core/InteractionContainer.hpp>
 #include <core/Omega.hpp>
@@ -36,14 +38,18 @@ void requireNotNegative(const char* field, Real value) {
     if (!(value >= 0.) || !std::isfinite(value)) refuse(field, value, "finite and >= 0");
 }
 
-/// Coefficients (9) of the sides [N s/m], from the masses of the nodes' bodies; empty without damping.
-vector<Real> dampingCoefficients(const Membrane& membrane, const vector<shared_ptr<Body>>& bodies, Real zeta) {
+/// Coefficients of the sides [N s/m], (9) with the masses of the nodes' bodies, or by a damping time [s]; empty
+/// without.
+vector<Real> dampingCoefficients(const Membrane& membrane, const vector<shared_ptr<Body>>& bodies, Real zeta,
+                                 Real time) {
     vector<Real> c;
-    if (!(zeta > 0.)) return c;
+    if (!(zeta > 0. || time > 0.)) return c;
     c.reserve(membrane.rest().sides.size());
-    for (const ::membrane::Side& s : membrane.rest().sides)
-        c.push_back(::membrane::dampingCoefficient(zeta, s.stiffness,
-                                                   0.5 * (bodies[s.a]->state->mass + bodies[s.b]->state->mass)));
+    for (const ::membrane::Side& s : membrane.rest().sides) {
+        const Real mass = 0.5 * (bodies[s.a]->state->mass + bodies[s.b]->state->mass);
+        c.push_back(time > 0. ? time * std::max(0., s.stiffness)
+                              : ::membrane::dampingCoefficient(zeta, s.stiffness, mass));
+    }
     return c;
 }
 
@@ -81,11 +87,15 @@ void MembraneForceEngine::postLoad(MembraneForceEngine&) {
     const StepGuard::Look look;
     requireNotNegative("beta", beta);
     requireNotNegative("gamma", gamma);
+    requireNotNegative("creaseLength", creaseLength);
     requireNotNegative("zeta", zeta);
+    requireNotNegative("dampingTime", dampingTime);
     requireNotNegative("airDensity", airDensity);
     if (!(theta0 >= 0. && theta0 <= Mathr::PI)) refuse("theta0", theta0, "in [0, pi]");
     if (creaseLaw != "paper" && creaseLaw != "conservative")
         refuse("creaseLaw", creaseLaw, "'paper' or 'conservative'");
+    if (beta > 0. && creaseLength > 0.) refuse("beta", beta, "0 where creaseLength is given");
+    if (zeta > 0. && dampingTime > 0.) refuse("zeta", zeta, "0 where dampingTime is given");
     if (timeStepCheckPeriod <= 0) refuse("timeStepCheckPeriod", timeStepCheckPeriod, "> 0");
     if (seenPositions.size() != seenVelocities.size())
         throw std::invalid_argument("MembraneForceEngine: seenPositions and seenVelocities must have the same length");
@@ -123,7 +133,10 @@ void MembraneForceEngine::preSave(MembraneForceEngine&) {
     law.bending = membrane->material ? beta * membrane->material->young * h * h * h / 12. : 0.;
     law.penalty = gamma;
     law.naturalAngle = theta0;
-    law.conservative = creaseLaw == "conservative";
+    law.conservative = creaseLaw == "conservative" || creaseLength > 0.;
+    if (membrane->material && creaseLength > 0.)
+        law.perLength = ::membrane::creaseStiffnessPerLength(membrane->material->young, membrane->material->poisson, h,
+                                                             creaseLength);
     return law;
 }
 
@@ -179,6 +192,7 @@ void MembraneForceEngine::prepare(Scene& now) {
     if (now.isPeriodic) throw std::runtime_error("MembraneForceEngine: a membrane cannot be in a periodic scene");
     bodies_ = membrane->bodies(now);
     membrane->checkUnchanged();
+    checkLaws();
     states_.clear();
     masses_.clear();
     for (const auto& body : bodies_) {
@@ -194,6 +208,11 @@ void MembraneForceEngine::prepare(Scene& now) {
     interacting_.clear();
     bodyCount_ = 0;
     arrange();
+}
+
+void MembraneForceEngine::checkLaws() const {
+    if (membrane->rest().planeStress && zeta > 0.)
+        refuse("zeta", zeta, "0 with a film of plane stress, which is damped by dampingTime");
 }
 
 void MembraneForceEngine::arrange() {
@@ -240,9 +259,12 @@ void MembraneForceEngine::prepareSweep(const vector<char>& owned, int parts) {
 ::membrane::ElementForces MembraneForceEngine::makeForces(const vector<shared_ptr<Body>>& bodies,
                                                           const Scene& in) const {
     const ::membrane::RestState& rest = membrane->rest();
-    const auto damping = dampingCoefficients(*membrane, bodies, zeta);
+    const auto damping = dampingCoefficients(*membrane, bodies, zeta, dampingTime);
     ::membrane::ElementForces all{std::make_shared<::membrane::SideForces>(rest, damping)};
-    if (law().bending > 0.) all.push_back(std::make_shared<::membrane::CreaseForce>(rest, law()));
+    if (rest.planeStress) // first, for there are most of them
+        all.insert(all.begin(), std::make_shared<::membrane::FilmForce>(membrane->nodes, membrane->triangles,
+                                                                        membrane->filmLaw(dampingTime)));
+    if (law().isThere()) all.push_back(std::make_shared<::membrane::CreaseForce>(rest, law()));
     if (airDensity > 0.) all.push_back(std::make_shared<::membrane::DragForce>(membrane->triangles, airDensity));
     for (const auto& further : surroundings_.furtherForces(*membrane, in)) all.push_back(further->make());
     return all;
@@ -289,21 +311,28 @@ void MembraneForceEngine::checkSides() {
         return true;
     };
     const auto all = [&] {
-        return interacting_.size() == membrane->rest().sides.size() &&
-               std::count_if(interacting_.begin(), interacting_.end(), computed) ==
-                   static_cast<std::ptrdiff_t>(interacting_.size());
+        return interacting_.size() == springs() && std::count_if(interacting_.begin(), interacting_.end(), computed) ==
+                                                       static_cast<std::ptrdiff_t>(interacting_.size());
     };
     if (all()) return;
     findSides();
     if (all() || !surroundings_.moves(*scene, left_)) return;
     const auto lost = std::find_if_not(interacting_.begin(), interacting_.end(), computed);
-    refuseSide(lost - interacting_.begin());
+    // Cables come last: where only they are springs, the first is that behind the film's sides.
+    refuseSide(lost - interacting_.begin() + (membrane->rest().sides.size() - springs()));
+}
+
+/// How many sides are springs, and so interactions.
+std::size_t MembraneForceEngine::springs() const {
+    const ::membrane::RestState& rest = membrane->rest();
+    return rest.planeStress ? rest.sides.size() - rest.filmSides : rest.sides.size();
 }
 
 /// Looks up what computes the sides: interactions may have been removed and added again.
 void MembraneForceEngine::findSides() {
     interacting_.clear();
     for (const ::membrane::Side& side : membrane->rest().sides) {
+        if (!membrane->rest().isSpring(side)) continue;
         const auto& link = scene->interactions->find(membrane->bodyIds[side.a], membrane->bodyIds[side.b]);
         MembranePhys* const phys = link ? exactly<MembranePhys>(link->phys) : nullptr;
         interacting_.push_back(phys ? boost::static_pointer_cast<MembranePhys>(link->phys)
@@ -317,7 +346,7 @@ void MembraneForceEngine::refuseSide(std::size_t number) const {
     const string a = std::to_string(side.a), b = std::to_string(side.b);
     const string which = "Membrane: side " + a + "-" + b + " (bodies #" + std::to_string(membrane->bodyIds[side.a]) +
                          " and #" + std::to_string(membrane->bodyIds[side.b]) + ")";
-    if (!interacting_[number])
+    if (!interacting_[number - (membrane->rest().sides.size() - springs())])
         throw std::runtime_error(which + " has no interaction with a MembranePhys, so that nothing computes it; call "
                                          "addInteractions() of the membrane");
     throw std::runtime_error(which + " was not computed in this step: put an InteractionLoop with "
@@ -360,13 +389,14 @@ void MembraneForceEngine::computeForces() {
     const MembraneLedger* const counting = ledger(*scene);
     const ::membrane::Sums sums = counting ? ::membrane::Sums::energies : ::membrane::Sums::none;
     continueLedger(counting, sums);
-    const bool onlySprings = sweep_.forces().size() == 1 && !(zeta > 0.);
+    const bool onlySprings = sweep_.forces().size() == 1 && !(zeta > 0. || dampingTime > 0.);
     if (!counting && onlySprings) return; // which are interactions
     ::membrane::SweepStep step;
     step.dt = scene->dt;
     step.move = false;
     step.apart = true;
-    step.elastic = counting;
+    const bool film = membrane->rest().planeStress; // is no interaction
+    step.elastic = counting || film;
     step.sums = sums;
     sweep_.step(step);
     for (const int i : allNodes_) {
@@ -375,6 +405,23 @@ void MembraneForceEngine::computeForces() {
             sum += sweep_.channelForce(static_cast<int>(channel), i);
         scene->forces.addForce(membrane->bodyIds[i], sum);
     }
+    if (film) addFilmForces();
+}
+
+/// Adds the elastic forces but those of the cables, which are interactions.
+void MembraneForceEngine::addFilmForces() const {
+    vector<Vector3r> elastic;
+    for (const int i : allNodes_) elastic.push_back(sweep_.elasticForce(i));
+    for (const ::membrane::Side& s : membrane->rest().sides) {
+        if (!membrane->rest().isSpring(s)) continue;
+        const Vector3r span = sweep_.x.at(s.b) - sweep_.x.at(s.a);
+        const Real length = span.norm();
+        if (!(length > s.restLength)) continue;
+        const Vector3r pull = ::membrane::sideTension(length, s.stiffness, s.restLength, s.critical) / length * span;
+        elastic[s.a] -= pull;
+        elastic[s.b] += pull;
+    }
+    for (const int i : allNodes_) scene->forces.addForce(membrane->bodyIds[i], elastic[i]);
 }
 
 ::membrane::LinearForces MembraneForceEngine::linearForces(const Scene& in, const vector<shared_ptr<Body>>& bodies,

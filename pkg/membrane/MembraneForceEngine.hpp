@@ -86,8 +86,10 @@ public:
         ((Real, beta, 0., Attr::triggerPostLoad, "Crease stiffness parameter beta [-], >= 0; 0: no creases."))
         ((Real, gamma, 100., Attr::triggerPostLoad, "Penalty factor gamma [-], >= 0, on creases whose faces passed through each other."))
         ((Real, theta0, 0., Attr::triggerPostLoad, "Natural angle theta0 of the creases [rad], in [0, pi]; 0: closed."))
+        ((Real, creaseLength, 0., Attr::triggerPostLoad, "The creases' own length L* [m], >= 0, in place of beta: stiffness D / L* a length on any mesh, D = E h³ / (12 (1 - nu²)), always the gradient of an energy; 0: by beta."))
         ((string, creaseLaw, "paper", Attr::triggerPostLoad, "'paper': equation (7) as printed; 'conservative': the gradient of an energy."))
         ((Real, zeta, 0., Attr::triggerPostLoad, "Damping ratio zeta [-], >= 0; 0: none."))
+        ((Real, dampingTime, 0., Attr::triggerPostLoad, "Damping time tau [s], >= 0, in place of zeta: film and cables are those of Kelvin and Voigt with this one time, on any mesh; 0: by zeta."))
         ((Real, airDensity, 0., Attr::triggerPostLoad, "Density of the air [kg/m³], >= 0; 0: none."))
         ((bool, forceTimeStep, false, , "Run even if O.dt is above criticalTimeStep()."))
         ((int, timeStepCheckPeriod, 5000, Attr::triggerPostLoad, "Steps between two checks of O.dt against criticalTimeStep(), which changes with the state; also checked when O.dt changes. > 0."))
@@ -174,6 +176,8 @@ private:
     vector<shared_ptr<MembranePhys>> interacting_; ///< what computes the sides
 
     void step();
+    void checkLaws() const;
+    void addFilmForces() const;
     void checkKnown() const;
     ::membrane::ElementForces makeForces(const vector<shared_ptr<Body>>& bodies, const Scene& in) const;
     ::membrane::LinearForces linearForces(const Scene& in, const vector<shared_ptr<Body>>& bodies,
@@ -181,6 +185,7 @@ private:
     void checkTimeStep();
     void checkSides();
     void findSides();
+    std::size_t springs() const;
     [[noreturn]] void refuseSide(std::size_t side) const;
     void findContacts();
     vector<Vector3r> channelForces(int channel) const;

@@ -212,7 +212,7 @@ bool MembraneLedger::isUpToDate(const Scene& now) const {
 }
 
 Real MembraneLedger::crease() const {
-    if (!forces || !(forces->beta > 0.)) return 0.;
+    if (!forces || !forces->membrane || !forces->law().isThere()) return 0.;
     const vector<Vector3r> x = forces->lastPositions();
     return x.empty() ? savedCrease : forces->creaseEnergy(x);
 }

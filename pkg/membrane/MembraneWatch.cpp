@@ -107,11 +107,12 @@ vector<MembraneWatch::Part> MembraneWatch::parts(bool look) const {
         const ::membrane::ElementForce* const force = sweep.forceOf(channel);
         return force ? force : sides; // without one there is nothing to blame
     };
-    vector<Part> all{{"the sides", ledger->balance(), sides, true},
-                     {"the creases", look ? ledger->creaseDefect() : 0., of(::membrane::creaseChannel), false, look},
-                     {"damping", ledger->dampingWork, of(::membrane::dampingChannel)},
-                     {"air drag", ledger->dragWork, of(::membrane::dragChannel)},
-                     {"contacts", ledger->contactGain, nullptr}};
+    vector<Part> all{
+        {ledger->forces->membrane->rest().planeStress ? "the film" : "the sides", ledger->balance(), sides, true},
+        {"the creases", look ? ledger->creaseDefect() : 0., of(::membrane::creaseChannel), false, look},
+        {"damping", ledger->dampingWork, of(::membrane::dampingChannel)},
+        {"air drag", ledger->dragWork, of(::membrane::dragChannel)},
+        {"contacts", ledger->contactGain, nullptr}};
     for (int channel = ::membrane::otherChannels; channel < static_cast<int>(sweep.channels().size()); ++channel)
         if (sweep.exchange(channel) == ::membrane::Exchange::loses)
             all.push_back({of(channel)->title(), ledger->workOf(sweep.channels()[channel]), of(channel)});

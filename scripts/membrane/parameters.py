@@ -130,11 +130,33 @@ class Film:
     density: float = parameter(
         1420.0, "kg/m3", TABLE_1, "density rho of the film", above=True, sets="MembraneMat.density"
     )
+    film: str = parameter(
+        "springs",
+        "-",
+        ASSUMED,
+        "the film's law: springs (3), (5), (6), or plane_stress, one film on any mesh",
+        choices=("springs", "plane_stress"),
+        sets="Membrane.film",
+    )
     alpha: float = parameter(
         100.0, "-", TABLE_2, "buckling parameter of the film", sets="Membrane.alpha"
     )
+    buckling_length: float = parameter(
+        0.0,
+        "m",
+        ASSUMED,
+        "half-wavelength at which the film buckles, on any mesh; 0: by alpha",
+        sets="Membrane.bucklingLength",
+    )
     zeta: float = parameter(
         0.02, "-", TABLE_2, "damping ratio; 0: none", sets="MembraneForceEngine.zeta"
+    )
+    damping_time: float = parameter(
+        0.0,
+        "s",
+        ASSUMED,
+        "damping time tau of the film, on any mesh; 0: by zeta",
+        sets="MembraneForceEngine.dampingTime",
     )
 
 
@@ -153,8 +175,22 @@ class Creases:
     alpha_crease: float = parameter(
         1000.0, "-", TABLE_2, "buckling parameter alpha_c of creases", sets="Membrane.alphaCrease"
     )
+    crease_buckling_length: float = parameter(
+        0.0,
+        "m",
+        ASSUMED,
+        "as buckling_length, of springs on creases; 0: by alpha_crease",
+        sets="Membrane.creaseBucklingLength",
+    )
     beta: float = parameter(
         30.0, "-", TABLE_2, "crease stiffness; 0: no creases", sets="MembraneForceEngine.beta"
+    )
+    crease_length: float = parameter(
+        0.0,
+        "m",
+        ASSUMED,
+        "the creases' own length L*, which tells their stiffness on any mesh; 0: by beta",
+        sets="MembraneForceEngine.creaseLength",
     )
     gamma: float = parameter(
         100.0,
@@ -256,6 +292,13 @@ class SquareSail:
     refine: int = parameter(
         1, "-", RUN, "finer mesh: strips and cells are divided by this", least=1, most=32
     )
+    as_printed: bool = parameter(
+        False,
+        "-",
+        RUN,
+        "alpha, alpha_c, beta, zeta as they are on every mesh; else they are those of refine 1, "
+        "and a finer mesh is of the same film",
+    )
 
 
 @dataclass(frozen=True)
@@ -353,6 +396,7 @@ class SceneParts(Engines, Hub, Air, Creases, Film):
 
     def __post_init__(self) -> None:
         check(self)
+        check_once(self)
 
 
 @dataclass(frozen=True)
@@ -422,6 +466,27 @@ def check(parameters: Any) -> None:
         object.__setattr__(parameters, item.name, item.type(value))
 
 
+# What the paper gives as numbers of its own mesh, by what a film has on any.
+PHYSICAL = {
+    "buckling_length": "alpha",
+    "crease_buckling_length": "alpha_crease",
+    "crease_length": "beta",
+    "damping_time": "zeta",
+}
+
+
+def check_once(parameters: Any) -> None:
+    """Raise ValueError if something is given twice: as a number of a mesh, and in SI."""
+    defaults = {item.name: item.default for item in fields(parameters)}
+    for name, number in PHYSICAL.items():
+        value, other = getattr(parameters, name), getattr(parameters, number)
+        if value > 0 and other not in (0, defaults[number]):
+            unit = next(f.metadata["unit"] for f in fields(parameters) if f.name == name)
+            raise ValueError(
+                f"{name} = {value} {unit} takes the place of {number} = {other}: give one of them"
+            )
+
+
 def check_steps(duration: float, dt: float) -> None:
     """Raise ValueError if a duration [s] is more steps of `dt` [s] than can be counted."""
     if duration / dt > MOST_STEPS:
@@ -483,6 +548,8 @@ def describe(item: Field) -> str:
 def attributes(kind: str, parameters: Any) -> dict[str, Any]:
     """Attributes of a class of YADE, by name, that follow from parameters: a dict.
 
+    A number whose place something in SI takes is 0: see PHYSICAL.
+
     Parameters
     ----------
     kind : str
@@ -490,10 +557,11 @@ def attributes(kind: str, parameters: Any) -> dict[str, Any]:
     parameters : dataclass
     """
     found = {}
+    replaced = {number for name, number in PHYSICAL.items() if getattr(parameters, name, 0) > 0}
     for item in fields(parameters):
         owner, _, name = (item.metadata["sets"] or "").partition(".")
         if owner == kind:
-            found[name] = getattr(parameters, item.name)
+            found[name] = 0.0 if item.name in replaced else getattr(parameters, item.name)
     return found
 
 

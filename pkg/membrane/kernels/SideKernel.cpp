@@ -144,6 +144,7 @@ void SideForces::arrange(const Partition& partition) {
     std::vector<int> sideOf, cableOf;
     for (std::size_t i = 0; i < rest_->sides.size(); ++i) {
         const Side& s = rest_->sides[i];
+        if (!rest_->isSpring(s)) continue;
         const bool cable = s.kind == SideKind::cable;
         (cable ? cables : film).push_back({s.a, s.b});
         (cable ? cableOf : sideOf).push_back(static_cast<int>(i));
@@ -262,12 +263,14 @@ void SideForces::addCable(int i, const GroupJob& job, GroupEnergy& sum) {
 void SideForces::addTo(LinearForces& to, const Points& x, const Points&) const {
     to.sides.reserve(rest_->sides.size());
     for (std::size_t i = 0; i < rest_->sides.size(); ++i)
-        to.addSide(tautSide(rest_->sides[i], damping_.empty() ? 0. : damping_[i], x));
+        if (rest_->isSpring(rest_->sides[i]))
+            to.addSide(tautSide(rest_->sides[i], damping_.empty() ? 0. : damping_[i], x));
 }
 
 Culprit SideForces::culprit(const Moment& moment, bool elastic) const {
     Culprit most;
     for (const Side& s : rest_->sides) {
+        if (!rest_->isSpring(s)) continue;
         const double now = (moment.x[s.b] - moment.x[s.a]).norm();
         const double then = (moment.before[s.b] - moment.before[s.a]).norm(), change = now - then;
         const double mean = 0.5 * (sideTension(now, s.stiffness, s.restLength, s.critical) +

@@ -5,7 +5,7 @@
 namespace membrane {
 
 /// The springs (3), (6) and the damping (9) of the sides of a membrane: those of the film in their arrangement, and the
-/// cables, which are few, one by one.
+/// cables, which are few, one by one. Of a film of plane stress only the cables.
 class SideForces : public ArrangedForce<2> {
 public:
     /// \param damping c of each side [N s/m], or empty: none

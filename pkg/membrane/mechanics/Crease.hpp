@@ -31,6 +31,9 @@ struct CreaseLaw {
     double penalty = 100.;     ///< gamma [-], stiffens theta < 0 where the faces have passed through each other
     double naturalAngle = 0.;  ///< theta0 [rad]
     bool conservative = false; ///< false: (7) as printed; true: minus the gradient of creaseEnergy()
+    double perLength = 0.;     ///< kappa [N], stiffness of a unit length, whatever the triangles; only conservative
+
+    bool isThere() const { return bending > 0. || perLength > 0.; }
 };
 
 /// Where a crease is: its angle and how that angle changes as the four nodes move.
@@ -80,9 +83,15 @@ inline CreaseState creaseState(const Rest& rest, const Eigen::Vector3d& a, const
     return s;
 }
 
-/// Stiffness K [N m/rad] of a crease: beta E J l_AB / l, l the mean of the two rest heights.
+/// Stiffness K [N m/rad] of a crease: beta E J l_AB / l, l the mean of the two rest heights, or kappa l_AB.
 template <class Rest> inline double creaseStiffness(const Rest& rest, const CreaseLaw& law) {
-    return law.bending * rest.length / (0.5 * (rest.heightC + rest.heightD));
+    return law.bending * rest.length / (0.5 * (rest.heightC + rest.heightD)) + law.perLength * rest.length;
+}
+
+/// Stiffness kappa [N] of a unit length of a crease: D / L*, D = E h³ / (12 (1 - nu²)) that of the film.
+/// \param creaseLength L* [m] > 0, the crease's own length (Lechenault et al. 2014)
+inline double creaseStiffnessPerLength(double young, double poisson, double thickness, double creaseLength) {
+    return young * thickness * thickness * thickness / (12. * (1. - poisson * poisson) * creaseLength);
 }
 
 /// Energy [J] of the conservative law: K [ (theta - theta0)²/2 + (gamma - 1) min(theta, 0)²/2 ].

@@ -16,6 +16,30 @@ TautSide tautSide(const Side& s, double damping, const Points& x) {
     return {s.a, s.b, span / length, axial, std::max(0., tension / length), damping};
 }
 
+StiffTriangle stiffTriangle(const Eigen::Vector3i& nodes, const FilmRest& rest, const FilmLaw& law, const Points& x) {
+    const FilmSides sides(x[nodes[0]], x[nodes[1]], x[nodes[2]]);
+    const Eigen::Vector3d g = filmGradient(law, rest, sides.grown(rest));
+    const double volume = law.thickness * rest.area;
+    const double mean = std::sqrt(volume * law.meanModulus()), shear = std::sqrt(0.5 * volume * law.shearModulus());
+    StiffTriangle t;
+    t.time = law.time;
+    for (int i = 0; i < 3; ++i) {
+        t.node[i] = nodes[i];
+        t.lateral[i] = std::max(0., 2. * g[i]);
+    }
+    for (int corner = 0; corner < 3; ++corner) {
+        const int ends = (corner + 1) % 3, begins = (corner + 2) % 3; // sides that end and begin at this corner
+        // Side i runs from corner i + 1 to i + 2: side i + 1 ends at corner i, side i + 2 begins there.
+        const auto moved = [&](const double(&by)[3], double root) -> Eigen::Vector3d {
+            return 2. * root * (by[ends] * sides.side[ends] - by[begins] * sides.side[begins]);
+        };
+        t.gradient[0][corner] = moved(rest.trace, mean);
+        t.gradient[1][corner] = moved(rest.normal, shear);
+        t.gradient[2][corner] = moved(rest.shear, shear);
+    }
+    return t;
+}
+
 /// The forces' turning with the triangles weighs where |force| / height is not small. It couples an apex, its foot and
 /// the other triangle; the factor bounds them together.
 StiffCrease stiffCrease(const Crease& c, const CreaseLaw& law, const Points& x) {
@@ -65,6 +89,11 @@ void LinearForces::addSide(const TautSide& side) {
     damped = damped || side.damping > 0.;
 }
 
+void LinearForces::addTriangle(const StiffTriangle& triangle) {
+    triangles.push_back(triangle);
+    damped = damped || triangle.time > 0.;
+}
+
 void LinearForces::addDrag(int node, double slope) {
     drag.resize(inverseRoot.size());
     drag[node] += slope;
@@ -94,6 +123,22 @@ void addProduct(const LinearForces& forces, double k, double c, const NodeVector
             ++side;
         } while (side != end && side->a == a);
         y[a] -= sum;
+    }
+    for (const StiffTriangle& t : forces.triangles) {
+        const double square = k + c * t.time;
+        Eigen::Vector4d force[3] = {Eigen::Vector4d::Zero(), Eigen::Vector4d::Zero(), Eigen::Vector4d::Zero()};
+        for (const auto& gradient : t.gradient) {
+            double change = 0.;
+            for (int i = 0; i < 3; ++i) change += gradient[i].dot(x[t.node[i]].head<3>());
+            for (int i = 0; i < 3; ++i) force[i] += (square * change) * padded(gradient[i]);
+        }
+        for (int i = 0; i < 3; ++i) {
+            const int from = (i + 1) % 3, to = (i + 2) % 3;
+            const Eigen::Vector4d lateral = (k * t.lateral[i]) * (x[t.node[to]] - x[t.node[from]]);
+            force[to] += lateral;
+            force[from] -= lateral;
+        }
+        for (int i = 0; i < 3; ++i) y[t.node[i]] += force[i];
     }
     for (const StiffCrease& e : forces.creases) {
         const Eigen::Vector4d gradC = padded(e.gradC), gradD = padded(e.gradD);

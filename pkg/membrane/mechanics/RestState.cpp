@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "RestState.hpp"
+#include "FilmTriangle.hpp"
 #include "SideForce.hpp"
 #include "TriangleStiffness.hpp"
 #include <algorithm>
@@ -51,6 +52,8 @@ void checkParameters(const MeshInput& in) {
     }
     requireNotNegative("alpha", in.alpha);
     requireNotNegative("alphaCrease", in.alphaCrease);
+    requireNotNegative("buckling", in.buckling);
+    requireNotNegative("bucklingCrease", in.bucklingCrease);
     for (std::size_t i = 0; i < in.nodes.size(); ++i)
         if (!in.nodes[i].allFinite())
             refuse("Membrane: nodes[", i, "] = (", in.nodes[i].transpose(), ") must be finite");
@@ -162,6 +165,26 @@ std::pair<double, int> largestAngle(const Eigen::Vector3d& lengths) {
     return {std::acos(cosine) * 180. / 3.14159265358979323846, longest};
 }
 
+/// Stiffness [N/m] of the sides of a triangle of a film of plane stress.
+Eigen::Vector3d planeStressStiffness(const MeshInput& in, const Eigen::Vector3i& triangle) {
+    FilmLaw law;
+    law.young = in.young;
+    law.poisson = in.poisson;
+    law.thickness = in.thickness;
+    const FilmRest rest(in.nodes[triangle[0]], in.nodes[triangle[1]], in.nodes[triangle[2]]);
+    Eigen::Vector3d k;
+    for (int i = 0; i < 3; ++i) k[i] = filmSideStiffness(law, rest, i);
+    return k;
+}
+
+/// Length below which a side of the film is buckled.
+double criticalLengthOf(const MeshInput& in, const Side& side) {
+    const bool crease = side.kind == SideKind::crease && !in.planeStress; // plane stress has no other buckling there
+    const double stress = crease ? in.bucklingCrease : in.buckling;
+    if (stress > 0. || in.planeStress) return criticalLengthAt(side.restLength, stress / in.young);
+    return criticalLength(side.restLength, crease ? in.alphaCrease : in.alpha, in.thickness);
+}
+
 /// Sides with their stiffnesses, masses and area of the film.
 void addFilm(const MeshInput& in, const Film& film, RestState& rest) {
     std::vector<int> sideOf(film.halves.size());
@@ -184,7 +207,8 @@ void addFilm(const MeshInput& in, const Film& film, RestState& rest) {
         if (!(area > 1e-12 * lengths.maxCoeff() * lengths.maxCoeff()))
             refuse("Membrane: triangles[", t, "] = (", tri.transpose(), ") has area ", area, " m²; it must be > 0");
 
-        const Eigen::Vector3d k = triangleStiffness(lengths, area, in.young, in.poisson, in.thickness);
+        const Eigen::Vector3d k = in.planeStress ? planeStressStiffness(in, tri)
+                                                 : triangleStiffness(lengths, area, in.young, in.poisson, in.thickness);
         if (!k.allFinite()) {
             const auto [angle, apex] = largestAngle(lengths);
             refuse("Membrane: triangles[", t, "] = (", tri.transpose(),
@@ -289,6 +313,7 @@ RestState restState(const MeshInput& in) {
     checkParameters(in);
     RestState rest;
     rest.masses.assign(in.nodes.size(), 0.);
+    rest.planeStress = in.planeStress;
     {
         const Film film(in);
         rest.filmSides = film.sides();
@@ -298,8 +323,7 @@ RestState restState(const MeshInput& in) {
     }
     for (Side& side : rest.sides) {
         side.restLength = (in.nodes[side.a] - in.nodes[side.b]).norm();
-        side.critical =
-            criticalLength(side.restLength, side.kind == SideKind::crease ? in.alphaCrease : in.alpha, in.thickness);
+        side.critical = criticalLengthOf(in, side);
     }
     addCables(in, rest);
 

@@ -20,8 +20,10 @@ struct MeshInput {
     double young = 0., poisson = 0., density = 0., thickness = 0.; ///< film [Pa], [-], [kg/m³], [m]
     double cableStiffness = 0.;                                    ///< EA [N]
     double cableDensity = 0.;                                      ///< mass a length [kg/m]
-    double alpha = 0., alphaCrease = 0.; ///< buckling parameter (6) of the film and of sides on creases [-]
-    bool allowNegativeStiffness = false; ///< accept sides whose stiffness (5) is not positive
+    double alpha = 0., alphaCrease = 0.;       ///< buckling parameter (6) of the film and of sides on creases [-]
+    double buckling = 0., bucklingCrease = 0.; ///< stress [Pa] at which film and sides on creases buckle; 0: by alpha
+    bool planeStress = false;                  ///< the film is one of plane stress, not of springs
+    bool allowNegativeStiffness = false;       ///< accept sides whose stiffness (5) is not positive
 };
 
 enum class SideKind : int { film = 0, crease = 1, cable = 2 };
@@ -31,7 +33,8 @@ struct Side {
     int a, b; ///< node indices, a < b
     SideKind kind;
     double restLength; ///< L0 [m]
-    double stiffness;  ///< k [N/m], (5) summed over the triangles of the side; EA/L0 for a cable
+    double stiffness;  ///< k [N/m], (5) summed over the triangles of the side, or that of a film of plane stress with
+                       ///< all other sides held; EA/L0 for a cable
     double critical;   ///< l_cr [m], (6); equal to L0 for a cable, which bears no compression
 };
 
@@ -51,11 +54,13 @@ inline CreaseState creaseState(const Crease& c, const Points& x) {
 struct RestState {
     std::vector<Side> sides;
     std::size_t filmSides = 0;      ///< number of sides of the film
+    bool planeStress = false;       ///< the film is one of plane stress: only cables are springs
     std::vector<int> cablesByNodes; ///< indices in `sides` of the cables, sorted by (a, b)
     std::vector<Crease> creases;
     std::vector<double> masses; ///< (4) summed over triangles, plus cables and point masses [kg]
     double area = 0.;           ///< of the film [m²]
 
+    bool isSpring(const Side& side) const { return !planeStress || side.kind == SideKind::cable; }
     /// Index in `sides` of the side between two nodes; -1 if there is none.
     int sideBetween(int a, int b) const;
 };

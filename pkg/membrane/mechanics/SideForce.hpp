@@ -12,6 +12,12 @@ inline double criticalLength(double restLength, double alpha, double thickness) 
     return std::max(0., restLength - alpha * pi * pi * thickness * thickness / (12. * restLength));
 }
 
+/// The same where the film buckles at one strain on any mesh: l_cr = L0 (1 - e), e = sigma_b / E, not below 0.
+/// \param strain e [-] >= 0
+inline double criticalLengthAt(double restLength, double strain) {
+    return std::max(0., restLength * (1. - strain));
+}
+
 /// Tension [N] of a side of the given length, paper equations (3) and (6); negative in compression.
 /// Linear above the critical length, constant below it (Figure 3).
 inline double sideTension(double length, double stiffness, double restLength, double critical) {

@@ -77,6 +77,15 @@ Rows ownNorms(const LinearForces& forces) {
             if (forces.damped) c[node].addDyad(s.damping, s.direction);
         }
     }
+    for (const StiffTriangle& t : forces.triangles) {
+        for (int i = 0; i < 3; ++i) {
+            for (const auto& gradient : t.gradient) {
+                k[t.node[i]].addDyad(1., gradient[i]);
+                if (forces.damped) c[t.node[i]].addDyad(t.time, gradient[i]);
+            }
+            for (const int node : {t.node[(i + 1) % 3], t.node[(i + 2) % 3]}) k[node].addUnit(t.lateral[i]);
+        }
+    }
     for (const StiffCrease& e : forces.creases) {
         const Corners corners(e);
         for (int i = 0; i < 4; ++i) {
@@ -100,6 +109,18 @@ void addOthers(const LinearForces& forces, const std::vector<double>& scale, Row
         rows.k[s.b] += s.axial * scale[s.a];
         rows.c[s.a] += s.damping * scale[s.b];
         rows.c[s.b] += s.damping * scale[s.a];
+    }
+    for (const StiffTriangle& t : forces.triangles) {
+        for (int i = 0; i < 3; ++i) { // the block between the ends of side i
+            const int begin = (i + 1) % 3, end = (i + 2) % 3, a = t.node[begin], b = t.node[end];
+            Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+            for (const auto& gradient : t.gradient) squares += gradient[begin] * gradient[end].transpose();
+            const double norm = squares.norm();
+            rows.k[a] += (norm + t.lateral[i]) * scale[b];
+            rows.k[b] += (norm + t.lateral[i]) * scale[a];
+            rows.c[a] += t.time * norm * scale[b];
+            rows.c[b] += t.time * norm * scale[a];
+        }
     }
     for (const StiffCrease& e : forces.creases) {
         const Corners corners(e);

@@ -21,6 +21,7 @@ from ..files import write_json
 from ..measures import HUB_OUTCOMES, LEDGER_OUTCOMES
 from ..parameters import RunParameters, Spool, Tethers, attributes, check_steps
 from ..progress import Progress, warn
+from ..scene.physical import physical_parameters
 from ..scene.spool import add_spool
 from ..view import report
 from .checkpoint import Checkpoints
@@ -65,7 +66,7 @@ def build(p: RunParameters, sail: Sail | None = None) -> tuple[Sail, scene.Membr
     """
     kind = SAILS[p.sail]
     sail = sail or kind.sail(p)
-    mesh = sail.mesh
+    mesh, p = sail.mesh, kind.film(p)
     try:
         membrane = scene.add_membrane(
             mesh.nodes,
@@ -281,7 +282,9 @@ class _Deployment:
         _, self.built = build(self.p, self.sail)
         critical = self.built.forces.criticalTimeStep()
         self.steps = steps_of(self.p, critical)
-        self.facts = {**self.sail.facts, "critical_time_step": critical, "dt": self.steps.dt}
+        lengths = physical_parameters(self.sail.mesh, self.kind.film(self.p))
+        about = {"film": lengths, "critical_time_step": critical, "dt": self.steps.dt}
+        self.facts = {**self.sail.facts, **about}
         for doubt in self.sail.doubts:
             warn(doubt)
         if self.checkpoints:

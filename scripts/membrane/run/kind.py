@@ -127,6 +127,10 @@ class Kind(Generic[P]):
         """The sail of parameters `p`; ValueError, in one sentence, if there is none."""
         raise NotImplementedError
 
+    def film(self, p: P) -> P:
+        """The parameters with which the membrane of a sail is built: by default `p`."""
+        return p
+
     def explained(self, refusal: str) -> str:
         """What to tell where the plugin refuses the sail's membrane."""
         return refusal

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The paper's sail: a square of four petals, folded to a cross, on tethers about a spool."""
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import ClassVar, TypeVar
 
 import numpy as np
@@ -9,7 +9,8 @@ import numpy as np
 from ...measures import SQUARE, SQUARE_OUTCOMES, in_plots
 from ...mesh import mesh_of
 from ...mesh.fold import fold, fold_report
-from ...parameters import SailParameters
+from ...parameters import PHYSICAL, SailParameters
+from ...scene.physical import physical_parameters
 from ...view import plots
 from ..kind import FinishedSail, Kind, Sail
 
@@ -41,6 +42,19 @@ class Square(Kind[P]):
             held=mesh.guide_nodes.ravel(),
             facts={"fold": asdict(fold_report(mesh, start))},
         )
+
+    def film(self, p: P) -> P:
+        """One film on every mesh: alpha, alpha_c, beta and zeta are those of refine 1."""
+        n = p.refine
+        if p.film == "springs" and (p.as_printed or n == 1):
+            return p
+        if p.film == "springs":
+            scaled = {"alpha": n**-2, "alpha_crease": n**-2, "beta": 1 / n, "zeta": n}
+            given = {number for name, number in PHYSICAL.items() if getattr(p, name) > 0}
+            numbers = {k: f * getattr(p, k) for k, f in scaled.items() if k not in given}
+            return replace(p, **numbers)
+        lengths = physical_parameters(mesh_of(replace(p, refine=1)), p)
+        return replace(p, **lengths, **dict.fromkeys(PHYSICAL.values(), 0.0))
 
     def draw(self, run: FinishedSail) -> None:
         """deployment.png, and shapes.png with six instants up to the fullest deployment."""
