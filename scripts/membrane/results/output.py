@@ -78,7 +78,7 @@ class VtkSeries:
             Time [s], later than that of the frame before.
         positions : (N, 3) float
             Positions of the nodes [m].
-        cell_data : dict of (M,) float or int, optional
+        cell_data : dict of (M,) float or int, or (M, 3) float, optional
             Values at the cells by name, for instance `area_strain`.
 
         Returns
@@ -94,10 +94,10 @@ class VtkSeries:
         grid.SetPoints(points)
         grid.SetCells(CELL_TYPES[self.cells.shape[1]], self._cell_array)
         for label, values in (cell_data or {}).items():
-            if np.shape(values) != (len(self.cells),):
+            if np.shape(values) not in ((len(self.cells),), (len(self.cells), 3)):
                 raise ValueError(
                     f"cell_data[{label!r}] of shape {np.shape(values)}: "
-                    f"must be ({len(self.cells)},), one for each cell"
+                    f"must be ({len(self.cells)},) or ({len(self.cells)}, 3), one for each cell"
                 )
             array = numpy_to_vtk(_finite(label, values), deep=True)
             array.SetName(label)

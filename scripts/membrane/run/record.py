@@ -42,6 +42,13 @@ SHAPE_FIELDS = {
     "fold": {"unit": "-", "side": "1 mountain, -1 valley, 0 no fold line"},
     "kind": {"unit": "-", "side": "0 film, 1 crease, 2 tether"},
 }
+# Those of the triangles of a film of plane stress.
+FILM_FIELDS = {
+    "film_state": {"unit": "-", "triangle": "0 taut, 1 wrinkled, 2 slack"},
+    "first_stress": {"unit": "Pa", "triangle": "larger principal stress, second Piola-Kirchhoff"},
+    "second_stress": {"unit": "Pa", "triangle": "smaller principal stress, alike"},
+    "wrinkles": {"unit": "-", "triangle": "unit vector along which wrinkles run; 0 without"},
+}
 TABLE, SHAPES = "history.csv", "shapes"  # in the output folder
 
 THIRDS = np.full(3, 1 / 3)  # of the three sides of a triangle
@@ -147,7 +154,9 @@ class Recorder:
         self.frame_times = list(state["film"]["times"]) if state["film"] else []
         self._film = VtkSeries(shapes, "film", mesh.triangles, self.frame_times)
         self._lines = VtkSeries(shapes, "sides", self.sides, self.frame_times)
-        write_json(shapes / "fields.json", SHAPE_FIELDS)
+        self._plane_stress = membrane.film == "plane_stress"
+        film_fields = FILM_FIELDS if self._plane_stress else {}
+        write_json(shapes / "fields.json", {**SHAPE_FIELDS, **film_fields})
         self._columns = {name: array("d", values) for name, values in read_history(table).items()}
         self.frames = Frames(self._film)
 
@@ -201,6 +210,18 @@ class Recorder:
             "area_strain": area_strain(self.sail.mesh, x, self.rest_areas),
             **{name: three[name] @ THIRDS for name in ("side_strain", "tension", "buckled")},
             "crease_angle": angles[np.arange(len(angles)), most],
+            **(self._of_film(x) if self._plane_stress else {}),
+        }
+
+    def _of_film(self, x):
+        """FILM_FIELDS (T,) and (T, 3) at positions (N, 3) [m]."""
+        film = self.built.membrane
+        first, second = np.array(film.filmStresses(x)).T
+        return {
+            "film_state": np.array(film.filmStates(x), dtype=np.int8),
+            "first_stress": first,
+            "second_stress": second,
+            "wrinkles": np.array(film.wrinkleDirections(x)),
         }
 
     def columns(self) -> dict[str, np.ndarray]:

@@ -33,6 +33,11 @@ FIELDS = (
     ("buckled", "buckled sides", "%", 100.0, "share of a triangle's sides"),
     ("crease_angle", "crease angle", "deg", 180 / np.pi, "0 folded, 180 flat or no fold line"),
 )
+# Those of a film of plane stress.
+FILM_FIELDS = (
+    ("film_state", "film state", "-", 1.0, "0 taut, 1 wrinkled, 2 slack"),
+    ("first_stress", "first stress", "kPa", 1e-3, "larger principal stress"),
+)
 
 
 class NoViewer(RuntimeError):
@@ -76,9 +81,11 @@ def run_data(folder: Path | str) -> dict[str, Any]:
     run = read_run(folder)
     triangles = len(run.triangles)
     nodes = len(read_frame(run.shapes[0][1])[0])
-    per_shape = 6 * nodes + len(FIELDS) * triangles + len(run.creases)
+    there = read_frame(run.shapes[0][1])[1]
+    fields = FIELDS + tuple(field for field in FILM_FIELDS if field[0] in there)
+    per_shape = 6 * nodes + len(fields) * triangles + len(run.creases)
     shapes = thinned(run.shapes, per_shape)
-    positions, data = zip(*[_frame(path, nodes, triangles) for _, path in shapes])
+    positions, data = zip(*[_frame(path, nodes, triangles, fields) for _, path in shapes])
     frames = np.array(positions)
     times = [time for time, _ in shapes]
     creases = (run.triangles, run.creases, run.crease_signs)
@@ -89,7 +96,7 @@ def run_data(folder: Path | str) -> dict[str, Any]:
         "turned": run.turned(times).tolist(),
         "positions": _lengths(frames),
         "triangles": _pack(run.triangles, np.uint32),
-        "fields": [_field(data, *about) for about in FIELDS],
+        "fields": [_field(data, *about) for about in fields],
         "creases": _pack(run.creases, np.uint32),
         "creaseSigns": run.crease_signs.tolist(),
         "creaseAngles": _levels(np.degrees(angles), 0.0, 180.0),
@@ -101,12 +108,12 @@ def run_data(folder: Path | str) -> dict[str, Any]:
     }
 
 
-def _frame(path, nodes, triangles):
-    """Positions and FIELDS of a shape; BadFile if it is not one of this sail."""
+def _frame(path, nodes, triangles, wanted):
+    """Positions and wanted fields of a shape; BadFile if it is not one of this sail."""
     positions, data = read_frame(path)
     if len(positions) != nodes or not np.isfinite(positions).all():
         raise BadFile(path, "", f"must hold {nodes} nodes at finite positions")
-    for name, *_ in FIELDS:
+    for name, *_ in wanted:
         if name not in data or len(data[name]) != triangles or not np.isfinite(data[name]).all():
             raise BadFile(path, name, f"must be {triangles} finite values")
     return positions, data
@@ -160,6 +167,8 @@ def _range(name, values):
         return 0.0, 100.0
     if name == "crease_angle":
         return 0.0, 180.0
+    if name == "film_state":
+        return 0.0, 2.0
     # The film shortens a thousand times as much as it stretches; the scale is the taut film's.
     taut = values[values > 0]
     high = float(f"{np.percentile(taut, 95):.1e}") if len(taut) else 1.0
