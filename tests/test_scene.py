@@ -140,8 +140,10 @@ class TestParameters(SceneTest):
         told = {name: place.split(".") for name, place in told.items() if place}
         self.assertGreaterEqual(len(told), 13)
         given = {"crease_law": "conservative", "force_time_step": True, "exchange_period": 7}
+        given |= {"film": "plane_stress", "zeta": 0.0, "beta": 0.0}
         rest = {name for name in told if name not in given}
         changed = {name: 0.5 * getattr(SceneParameters(), name) or 0.25 for name in rest}
+        changed |= dict.fromkeys(("alpha", "alpha_crease"), 0.0)  # given in SI
         p = SceneParameters(path="fused", **given, **changed)
         nodes, triangles = grid(3)
         net = scene.add_membrane(

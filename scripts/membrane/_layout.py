@@ -8,15 +8,8 @@ from types import ModuleType
 def check(native: ModuleType, wrapper: ModuleType) -> None:
     """Compare what the compiled offsets find in YADE's objects with what YADE wrote there.
 
-    Parameters
-    ----------
-    native : the extension module
-    wrapper : module yade.wrapper
-
-    Raises
-    ------
-    ImportError
-        naming the first member that differs.
+    `native` is the extension module, `wrapper` yade.wrapper. ImportError names the first member
+    that differs.
     """
     for cls, wrote, seen in round_trips(native, wrapper):
         for name, value in wrote.items():

@@ -41,12 +41,8 @@ DRAWERS = ("GlExtra_Membrane",)  # only where YADE has its 3D view
 def load() -> dict[str, type]:
     """Give the plugin's classes by name; load and register them first if YADE does not have them.
 
-    A YADE built with them in its source tree has them, whatever its version.
-
-    Raises
-    ------
-    ImportError
-        in one sentence, if there is no YADE, another version of it, or one laid out differently.
+    A YADE built with them in its source tree has them, whatever its version. ImportError, in one
+    sentence, if there is no YADE, another version of it, or one laid out differently.
     """
     wrapper = _running_yade()
     names = CLASSES + (DRAWERS if hasattr(wrapper, "GlExtraDrawer") else ())

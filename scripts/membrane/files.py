@@ -22,12 +22,7 @@ TEMPORARY = ".membrane-"  # names of files begin by it that are to take the plac
 class BadFile(ValueError):
     """A file that cannot be used: says in one sentence which one, where in it, and why.
 
-    Parameters
-    ----------
-    path : path
-    place : str
-        Where in the file, as `file_frames[2].edges_vertices[7]`; empty: the file as a whole.
-    reason : str
+    `place` is as `file_frames[2].edges_vertices[7]`, or empty: the file as a whole.
     """
 
     def __init__(self, path: Path | str, place: str, reason: str) -> None:
@@ -90,10 +85,7 @@ def one_of_each(pairs: Iterable[tuple[Any, Any]]) -> dict:
 def read_json(path: Path | str, largest: int = LARGEST) -> Any:
     """What a JSON file holds, by the letter of RFC 8259; an object must not name a key twice.
 
-    Raises
-    ------
-    BadFile
-        Also for NaN and Infinity, for numbers too large for a float and for deep nesting.
+    BadFile also for NaN and Infinity, for numbers too large for a float and for deep nesting.
     """
 
     def refuse(word: str) -> None:

@@ -18,21 +18,11 @@ MOST_PAIRS = 500_000  # that are looked at together, for the sake of memory
 
 
 def unique_sides(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Sides of a triangulation, each once.
+    """Sides of a triangulation (T, 3), each once.
 
-    Parameters
-    ----------
-    triangles : (T, 3) int
-        Corners.
-
-    Returns
-    -------
-    sides : (E, 2) int
-        Node ids, the smaller first, in lexical order.
-    triangle_sides : (T, 3) int
-        Row of `sides` of the sides (0, 1), (1, 2), (2, 0) of each triangle.
-    shares : (E,) int
-        Number of triangles at each side: 1 on an edge, 2 inside.
+    Returns the sides (E, 2), node ids in lexical order with the smaller first; their rows (T, 3)
+    for the sides (0, 1), (1, 2), (2, 0) of each triangle; and the number of triangles at each,
+    (E,): 1 on an edge, 2 inside.
     """
     triangles = np.asarray(triangles, dtype=int).reshape(-1, 3)
     size = 1 + triangles.max(initial=0)
@@ -45,10 +35,7 @@ def unique_sides(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndar
 def side_rows(sides: np.ndarray, pairs: np.ndarray) -> np.ndarray:
     """Rows (n,) of `sides` (E, 2), the smaller node first, that join `pairs` (n, 2) of nodes.
 
-    Raises
-    ------
-    ValueError
-        If a pair is not a side.
+    ValueError if a pair is not a side.
     """
     size = 1 + np.max(sides, initial=0)
     keys = sides[:, 0] * size + sides[:, 1]
@@ -96,23 +83,8 @@ def cut_quadrangles(nodes: np.ndarray, quadrangles: np.ndarray) -> np.ndarray:
     """Each quadrangle cut in two along the diagonal that leaves the smaller largest angle.
 
     Flat triangles would get a negative stiffness. Where both are as good, from the first corner.
-
-    Parameters
-    ----------
-    nodes : (N, 3) float
-        Positions [m].
-    quadrangles : (n, 4) int
-        Corners, all round.
-
-    Returns
-    -------
-    (2 n, 3) int
-        Corners of triangles, run the same way round.
-
-    Raises
-    ------
-    ValueError
-        If sides of a quadrangle cross.
+    Makes of `quadrangles` (n, 4), whose corners run all round, of `nodes` (N, 3) [m] triangles (2
+    n, 3) that run the same way round. ValueError if sides of a quadrangle cross.
     """
     ways = np.stack(
         [quadrangles[:, [[0, 1, 2], [0, 2, 3]]], quadrangles[:, [[1, 2, 3], [1, 3, 0]]]]
@@ -131,24 +103,10 @@ def cut_quadrangles(nodes: np.ndarray, quadrangles: np.ndarray) -> np.ndarray:
 
 
 def crease_corners(triangles: np.ndarray, creases: np.ndarray) -> Any:
-    """The two triangles at each crease.
+    """The two triangles at each of `creases` (K, 2): nodes A, B, C, D (K, 4), A and B as given.
 
-    Parameters
-    ----------
-    triangles : (T, 3) int
-        Corners, counter-clockwise seen from the top.
-    creases : (K, 2) int
-        Node ids A, B.
-
-    Returns
-    -------
-    (K, 4) int
-        A, B, C, D: ABC is counter-clockwise, so C lies left of A -> B, and D right of it.
-
-    Raises
-    ------
-    ValueError
-        If a crease is not shared by exactly two triangles of equal orientation.
+    Of `triangles` (T, 3), counter-clockwise seen from the top; so is ABC: C lies left of A -> B, D
+    right of it. ValueError if a crease is not shared by exactly two triangles of equal orientation.
     """
     triangles = np.asarray(triangles, dtype=int)
     creases = np.asarray(creases, dtype=int).reshape(-1, 2)
@@ -176,24 +134,19 @@ def crease_corners(triangles: np.ndarray, creases: np.ndarray) -> Any:
 def crease_angles(
     nodes: np.ndarray, triangles: np.ndarray, creases: np.ndarray, signs: np.ndarray
 ) -> np.ndarray:
-    """Angle between the two triangles at each crease, on the inside of the fold.
+    """Angle between the two triangles at each crease, on the inside of the fold: (K,) float [rad].
+
+    In (-pi/2, 3 pi/2]: 0 folded face to face, pi flat, negative where the two faces have passed
+    through each other.
 
     Parameters
     ----------
     nodes : (N, 3) float
         Positions [m].
-    triangles : (T, 3) int
-        Corners, counter-clockwise seen from the top.
-    creases : (K, 2) int
-        Node ids A, B; their order does not matter.
+    triangles, creases : (T, 3) and (K, 2) int
+        Corners, counter-clockwise seen from the top; nodes A, B of each crease in any order.
     signs : (K,) int
         MOUNTAIN (+1): the crease sticks out on the top side when folded. VALLEY (-1): below.
-
-    Returns
-    -------
-    (K,) float
-        Angles [rad] in (-pi/2, 3 pi/2]: 0 folded face to face, pi flat, negative where the two
-        faces have passed through each other.
 
     Raises
     ------
@@ -251,23 +204,10 @@ def pieces(count: int, sides: np.ndarray) -> np.ndarray:
 
 
 def crossings(nodes: np.ndarray, sides: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """Pairs of a side and a triangle that cut each other.
+    """Pairs (P, 2) of rows of `sides` and of `triangles` that cut each other.
 
-    A pair with a common node is never counted, nor is one that only touches in its plane.
-
-    Parameters
-    ----------
-    nodes : (N, 3) float
-        Positions [m].
-    sides : (E, 2) int
-        Node ids.
-    triangles : (T, 3) int
-        Corners.
-
-    Returns
-    -------
-    (P, 2) int
-        Rows of `sides` and of `triangles`.
+    A pair with a common node is never counted, nor is one that only touches in its plane. `nodes`
+    (N, 3) are positions [m], `sides` (E, 2) and `triangles` (T, 3) node ids.
     """
     found = [np.empty((0, 2), dtype=int)]
     if not (len(sides) and len(triangles)):
@@ -285,15 +225,7 @@ def crossings(nodes: np.ndarray, sides: np.ndarray, triangles: np.ndarray) -> np
 def _near_pairs(ones, others):
     """Yield, piece by piece, the pairs of point sets whose boxes touch, each pair once.
 
-    Parameters
-    ----------
-    ones, others : (m, p, 3) and (n, q, 3) float
-        Sets of points [m].
-
-    Yields
-    ------
-    rows, rows : (k,) int
-        Of `ones` and of `others`.
+    `ones` (m, p, 3) and `others` (n, q, 3) are sets of points [m]; pairs are rows (k,) of either.
     """
     low, high = others.min(axis=1), others.max(axis=1)
     least, most = ones.min(axis=1), ones.max(axis=1)

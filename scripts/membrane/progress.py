@@ -15,13 +15,7 @@ class Terminated(BaseException):
 class Progress:
     """Prints a line now and then: rewritten in place on a terminal, every 10 % elsewhere.
 
-    Parameters
-    ----------
-    label : str
-    total : float
-        Simulated time [s] at the end.
-    stream : file, optional
-        Default: standard error.
+    `total` is the simulated time [s] at the end, `stream` standard error by default.
     """
 
     def __init__(self, label: str, total: float, stream: TextIO | None = None) -> None:
@@ -57,20 +51,9 @@ def stages(
 ) -> Iterator[Callable[[str], None]]:
     """Show by name which stage of some work has begun, and at the end how long all took.
 
-    Parameters
-    ----------
-    label : str
-    weights : dict
-        The stages' names in turn, each with its share of the time, in any unit.
-    silent : bool
-        Show nothing, as is right for short work.
-    stream : file, optional
-        Default: standard error.
-
-    Yields
-    ------
-    function
-        To be called with the name of a stage when it begins.
+    Gives a function to be called with the name of a stage when it begins. `weights` has the stages
+    in turn, each with its share of the time, in any unit; `silent` shows nothing, as is right for
+    short work; `stream` is standard error by default.
     """
     progress = Progress(label, 1.0, stream)
     names, total = list(weights), sum(weights.values())

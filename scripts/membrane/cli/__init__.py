@@ -16,15 +16,8 @@ def run(
 ) -> None:
     """Run `main` of a command's module; if it returns anything, that is the exit status.
 
-    Parameters
-    ----------
-    command : str
-    stopped : str
-        What to say after Ctrl-C.
-    module : str, optional
-        Where it does not have the command's name.
-    **options
-        Of its `main`.
+    `stopped` is what to say after Ctrl-C, `module` is where the command is if that does not have
+    its name; `options` are those of its `main`.
     """
     with plain_errors(command, stopped):  # a package that is imported may be missing
         found = importlib.import_module(f".{module or command}", __name__)

@@ -20,23 +20,9 @@ def batch_sail() -> str:
 
 
 def batch_row(kind: Any) -> tuple[dict, str | None]:
-    """Parameters and name of this job of yade-batch; none outside a batch.
+    """Parameters of a class `kind` and name of this job of yade-batch; {} and None outside a batch.
 
-    Parameters
-    ----------
-    kind : class
-        Of the parameters.
-
-    Returns
-    -------
-    parameters : dict
-    name : str or None
-        Its description.
-
-    Raises
-    ------
-    ValueError
-        If the table has an unknown column, or the row a value that cannot be read.
+    ValueError if the table has an unknown column, or the row a value that cannot be read.
     """
     file, line = _place()
     if not file:

@@ -25,16 +25,10 @@ DEBIAN = {"vtkmodules": "vtk9"}  # packages whose names in Python and in Debian 
 def plain_errors(command: str, stopped: str = "stopped by Ctrl-C") -> Iterator[None]:
     """End the program with one sentence where what is inside raises an error that is foreseen.
 
-    What a command imports besides the standard library belongs inside, too: a package may be
-    missing. With MEMBRANE_DEBUG=1 it shows the traceback, too. Other errors are faults of the
-    program: a traceback, and what to do with it.
-
-    Parameters
-    ----------
-    command : str
-        Name that the sentence begins with.
-    stopped : str
-        What to say after Ctrl-C.
+    The sentence begins with the name of the `command`; `stopped` is what to say after Ctrl-C. What
+    a command imports besides the standard library belongs inside, too: a package may be missing.
+    With MEMBRANE_DEBUG=1 it shows the traceback, too. Other errors are faults of the program: a
+    traceback, and what to do with it.
     """
     # Under nohup SIGHUP is ignored, and stays so.
     heard = [s for s in (signal.SIGTERM, signal.SIGHUP) if signal.getsignal(s) != signal.SIG_IGN]

@@ -73,20 +73,10 @@ def add_only(
 
 
 def chosen_sail(words: list[str], default: str = "square") -> tuple[Any, list[str]]:
-    """Which kind of sail the first word of a command line means, and the words that are left.
+    """Class of parameters that the first word of a command line means, and the words that are left.
 
-    Parameters
-    ----------
-    words : list of str
-        The first may be the name of a kind, or that of a file, which stays; or an option.
-    default : str
-        Kind where none is meant.
-
-    Returns
-    -------
-    kind : class
-        Of its parameters.
-    words : list of str
+    That word may be the name of a kind of sail, or that of a file, which stays; or an option: then
+    the kind is `default`.
     """
     first = words[0] if words else "-"
     if first in SAILS:
@@ -109,15 +99,9 @@ def sails_text() -> str:
 def add_arguments(
     parser: argparse.ArgumentParser, kind: Any = SailParameters, several: bool = False
 ) -> None:
-    """Add one option for every parameter to an argparse parser, grouped by source.
+    """Add one option for every parameter of a class `kind` to a parser, grouped by source.
 
-    Parameters
-    ----------
-    parser : ArgumentParser
-    kind : class
-        Of the parameters.
-    several : bool
-        Each takes one value or more, and has none unless it is given.
+    With `several` each takes one value or more, and has none unless it is given.
     """
     for source in dict.fromkeys(item.metadata["source"] for item in fields(kind)):
         group = parser.add_argument_group(f"parameters, {source}")
@@ -129,22 +113,10 @@ def add_arguments(
 def parse(
     parser: argparse.ArgumentParser, kind: Any = SailParameters, words: list[str] | None = None
 ) -> argparse.Namespace:
-    """Arguments of an argparse parser with options for all parameters and one for a file of them.
+    """Arguments of a parser, which gets options for all parameters and one for a file of them.
 
-    What is given on the command line wins over the file, which wins over defaults.
-
-    Parameters
-    ----------
-    parser : ArgumentParser
-        Gets the options.
-    kind : class
-        Of the parameters.
-    words : list of str, optional
-        In place of those of sys.argv.
-
-    Raises
-    ------
-    BadFile or OSError
+    What is given on the command line, or in `words` in its place, wins over the file, which wins
+    over defaults; `kind` is the class of the parameters. BadFile or OSError if the file is none.
     """
     add_arguments(parser, kind)
     add_file(parser)

@@ -27,12 +27,10 @@ SHORTENED = 1e-3
 def fold(
     mesh: Any, bar_radius: float = 0.030, arm_radius: float = 0.040, layer_gap: float = 1e-4
 ) -> np.ndarray:
-    """Positions of all nodes in the folded state.
+    """Positions (N, 3) [m] of all nodes of a SailMesh, the flat sail, in the folded state.
 
     Parameters
     ----------
-    mesh : SailMesh
-        The flat sail.
     bar_radius : float
         Distance of the guide bars from the axis [m], more than the spool's radius.
     arm_radius : float
@@ -40,11 +38,6 @@ def fold(
         more than bar_radius / sqrt(2); the corner is rounded by twice the stack's thickness.
     layer_gap : float
         Distance between neighbouring layers [m], less than a twentieth of the strip width.
-
-    Returns
-    -------
-    (N, 3) float
-        Positions [m] of the nodes of `mesh`.
 
     Raises
     ------
@@ -78,25 +71,13 @@ def _height(mesh, row, layer_gap):
 
 @dataclass(frozen=True)
 class _CentreLine:
-    """Right half of petal 0's centre line: straight, then an arc to the right, then the diagonal.
+    """Right half of petal 0's centre line: straight, an arc to the right, then the diagonal."""
 
-    Attributes
-    ----------
-    bar : float
-        x of the start (bar, 0) [m].
-    lean : float
-        Angle of the first straight part from +y towards the axis [rad].
-    straight : float
-        Length of the first straight part [m].
-    radius, turn : float
-        Radius [m] and angle [rad] of the arc.
-    """
-
-    bar: float
-    lean: float
-    straight: float
-    radius: float
-    turn: float
+    bar: float  #: x of the start (bar, 0) [m]
+    lean: float  #: angle of the first straight part from +y towards the axis [rad]
+    straight: float  #: length of that part [m]
+    radius: float  #: of the arc [m]
+    turn: float  #: angle of the arc [rad]
 
     @property
     def bend_end(self):
@@ -277,57 +258,23 @@ def _check_layers(mesh, positions, layer_gap):
 
 @dataclass(frozen=True)
 class FoldReport:
-    """How well a folded state keeps the film's lengths and layers.
+    """How well a folded state keeps the film's lengths and layers."""
 
-    Attributes
-    ----------
-    stretch : float
-        Largest strain of the film's sides [-]; positive = stretched.
-    shortening : float
-        Largest shortening of the film's sides [-].
-    shortened : int
-        Number of the film's sides shortened by more than 0.1 %.
-    cable_stretch, cable_slack : float
-        Largest strain of a tether segment, and 1 - end distance / length of a tether [-].
-    least_angle, largest_angle : float
-        Range of the creases' opening angles [rad].
-    layers : int
-        Layers of each half strip.
-    tip_radius : float
-        Mean distance of the tips from the axis [m].
-    least_radius : float
-        Least distance of the film's nodes from the axis [m].
-    height : float
-        Extent of the film along z [m].
-    """
-
-    stretch: float
-    shortening: float
-    shortened: int
-    cable_stretch: float
-    cable_slack: float
-    least_angle: float
-    largest_angle: float
-    layers: int
-    tip_radius: float
-    least_radius: float
-    height: float
+    stretch: float  #: largest strain of the film's sides [-]; positive = stretched
+    shortening: float  #: largest shortening of the film's sides [-]
+    shortened: int  #: number of the film's sides shortened by more than 0.1 %
+    cable_stretch: float  #: largest strain of a tether segment [-]
+    cable_slack: float  #: 1 - end distance / length of a tether, least [-]
+    least_angle: float  #: of the creases' opening angles [rad]
+    largest_angle: float  #: of them, too [rad]
+    layers: int  #: of each half strip
+    tip_radius: float  #: mean distance of the tips from the axis [m]
+    least_radius: float  #: of the film's nodes from the axis [m]
+    height: float  #: extent of the film along z [m]
 
 
 def fold_report(mesh: Any, positions: np.ndarray) -> Any:
-    """Measure a folded state.
-
-    Parameters
-    ----------
-    mesh : SailMesh
-        The flat sail.
-    positions : (N, 3) float
-        Positions [m] of its nodes.
-
-    Returns
-    -------
-    FoldReport
-    """
+    """FoldReport of the nodes of a SailMesh, the flat sail, at `positions` (N, 3) [m]."""
     strain = _strain(mesh.nodes, positions, mesh.sides)
     ends = np.column_stack([mesh.anchors, mesh.inner_corners])
     angles = crease_angles(positions, mesh.triangles, mesh.creases, mesh.crease_signs)

@@ -48,40 +48,22 @@ LARGEST_ID = 2**31 - 1
 class FoldFrame:
     """One frame. V vertices, E edges, F faces; None where the frame says nothing.
 
-    Attributes
-    ----------
-    coords : (V, 3) float or None
-        In `unit`; missing third coordinates are 0.
-    edges : (E, 2) int or None
-        Vertices.
-    letters : (E,) str or None
-        B border, M mountain, V valley, F flat, U unassigned, C cut, J join.
-    angles : (E,) float or None
-        Fold angles [deg] in [-180, 180], positive valley, negative mountain. In files null stands
-        for 0 on edges that do not fold.
-    faces : tuple of (n,) int or None
-        Vertices of each face, counter-clockwise seen from the top.
-    unit : str
-        Of the coordinates; "unit": no physical meaning.
-    classes, attributes : tuple of str
-        As "creasePattern", "foldedForm"; as "2D", "3D".
-    title, description, author : str
-    custom : dict
-        By key, whose name has a colon; anything that JSON can hold.
+    Letters are B border, M mountain, V valley, F flat, U unassigned, C cut, J join. In files null
+    stands for an angle of 0 on edges that do not fold.
     """
 
-    coords: np.ndarray | None = None
-    edges: np.ndarray | None = None
-    letters: np.ndarray | None = None
-    angles: np.ndarray | None = None
-    faces: tuple[np.ndarray, ...] | None = None
-    unit: str = "unit"
-    classes: tuple[str, ...] = ()
-    attributes: tuple[str, ...] = ()
+    coords: np.ndarray | None = None  #: (V, 3) in `unit`; missing third coordinates are 0
+    edges: np.ndarray | None = None  #: (E, 2) vertices
+    letters: np.ndarray | None = None  #: (E,)
+    angles: np.ndarray | None = None  #: (E,) [deg] in [-180, 180], + valley, - mountain
+    faces: tuple[np.ndarray, ...] | None = None  #: vertices (n,), counter-clockwise from the top
+    unit: str = "unit"  #: of the coordinates; "unit": no physical meaning
+    classes: tuple[str, ...] = ()  #: as "creasePattern", "foldedForm"
+    attributes: tuple[str, ...] = ()  #: as "2D", "3D"
     title: str = ""
     description: str = ""
     author: str = ""
-    custom: dict[str, Any] = field(default_factory=dict)
+    custom: dict[str, Any] = field(default_factory=dict)  #: what JSON can hold; keys with a colon
 
     @property
     def metre(self) -> float | None:
@@ -93,29 +75,19 @@ class FoldFrame:
 class FoldFile:
     """All frames of a file, the key frame first, and what the file says about itself.
 
-    Attributes
-    ----------
-    frames : tuple of FoldFrame
-    texts : dict of str
-        file_creator, file_author, file_title, file_description, where given.
-    classes : tuple of str
-        As "singleModel", "animation".
+    Its texts are file_creator, file_author, file_title, file_description, where given.
     """
 
     frames: tuple[FoldFrame, ...]
-    texts: dict[str, str] = field(default_factory=dict)
-    classes: tuple[str, ...] = ()
+    texts: dict[str, str] = field(default_factory=dict)  #: by key, as "file_author"
+    classes: tuple[str, ...] = ()  #: as "singleModel", "animation"
 
 
 def fold_angles(angles: ArrayLike, signs: ArrayLike) -> np.ndarray:
     """Fold angles [deg] of creases, in [-180, 180], positive valley.
 
-    Parameters
-    ----------
-    angles : (C,) float
-        Between the two triangles [rad]: 0 face to face, pi flat; `geometry.crease_angles`.
-    signs : (C,) int
-        +1 mountain, -1 valley.
+    `angles` (C,) between the two triangles [rad], 0 face to face, pi flat, are those of
+    `geometry.crease_angles`; `signs` (C,) are +1 mountain, -1 valley.
     """
     turned = -np.asarray(signs) * np.degrees(math.pi - np.asarray(angles))
     # Faces that have passed through each other are bent by more than half a turn.
@@ -123,19 +95,10 @@ def fold_angles(angles: ArrayLike, signs: ArrayLike) -> np.ndarray:
 
 
 def crease_angles(angles: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """Angles [rad] in [0, pi] between the faces at creases, and their signs, from fold angles.
+    """Angles (C,) [rad] in [0, pi] between the faces at creases, and their signs (C,).
 
-    Parameters
-    ----------
-    angles : (C,) float
-        Fold angles [deg] in [-180, 180]. Those of 0 count as valleys.
-
-    Returns
-    -------
-    angles : (C,) float
-        0 folded face to face, pi flat.
-    signs : (C,) int
-        +1 mountain, -1 valley.
+    From fold angles (C,) [deg] in [-180, 180], of which those of 0 count as valleys. An angle of 0
+    is folded face to face, pi flat; a sign of +1 mountain, -1 valley.
     """
     turned = np.asarray(angles, dtype=float)
     return math.pi - np.radians(np.abs(turned)), np.where(turned < 0, MOUNTAIN, VALLEY)
@@ -270,19 +233,9 @@ def _checked(path, place, value, rule, vertices=LARGEST_ID, edges=0):
 
 
 def read_fold(path: str | Path) -> FoldFile:
-    """Read a FOLD file.
+    """Read a FOLD file; every inherited property is filled in, each frame stands for itself.
 
-    Returns
-    -------
-    FoldFile
-        With every inherited property filled in, so that each frame stands for itself.
-
-    Raises
-    ------
-    BadFile
-        Whatever is wrong, in one sentence.
-    OSError
-        If the file cannot be opened.
+    BadFile, in one sentence, for whatever is wrong; OSError if the file cannot be opened.
     """
     top = read_object(path)
     _check_spec(path, top)
@@ -415,19 +368,10 @@ def _place(number, name):
 
 
 def write_fold(path: str | Path, content: FoldFile) -> None:
-    """Write a FOLD file, all of it or nothing.
+    """Write a FOLD file, all of it or nothing; ValueError if `read_fold` would not accept it.
 
-    Parameters
-    ----------
-    path : path
-    content : FoldFile
-        Frames inherit from the key frame the arrays and tuples that they share with it, which
-        keeps a series of folded states short.
-
-    Raises
-    ------
-    ValueError
-        If `read_fold` would not accept it.
+    Frames inherit from the key frame the arrays and tuples that they share with it, which keeps a
+    series of folded states short.
     """
     key_frame = content.frames[0]
     top = {"file_spec": SPEC, **content.texts, "file_classes": list(content.classes)}

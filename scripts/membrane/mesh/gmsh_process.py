@@ -20,17 +20,8 @@ class GmshError(ValueError):
 def in_gmsh(work: Callable, *arguments: Any) -> Any:
     """What `work(gmsh, *arguments)` gives, in a process that ends with it.
 
-    Parameters
-    ----------
-    work : function
-        Of a module; its arguments and what it gives go through pickle.
-
-    Raises
-    ------
-    GmshError
-        If gmsh raises an error, or crashes.
-    ValueError
-        What `work` raises, or if gmsh is not installed.
+    `work` is a function of a module; its arguments and what it gives go through pickle. GmshError
+    if gmsh raises an error, or crashes; ValueError if `work` raises it, or gmsh is not installed.
     """
     with ProcessPoolExecutor(1, get_context("fork"), _begin) as child:
         try:

@@ -23,22 +23,18 @@ def miura(
 ) -> FoldFile:
     """FOLD frames of a Miura-ori sheet: the crease pattern and one folded form.
 
+    In metres, both frames centred at the origin. ValueError names a parameter that is out of range.
+
     Parameters
     ----------
     columns, rows : int
         Parallelograms along x and along y, >= 2 each, an even number of columns.
     along, across : float
-        Sides of the parallelograms [m]: those along y in the flat sheet, and those of the
+        Sides of the parallelograms [m], > 0: those along y in the flat sheet, and those of the
         zig-zag lines that run along x.
-    angle : float
-        Acute angle of the parallelograms [deg], above 0 and below 90.
-    fold : float
-        Angle by which the faces of the folded form are inclined [deg], above 0 and below 90.
-
-    Returns
-    -------
-    FoldFile
-        In metres, both frames centred at the origin.
+    angle, fold : float
+        Acute angle of the parallelograms, and angle by which the faces of the folded form are
+        inclined [deg], above 0 and below 90.
     """
     _check(columns, rows, along, across, angle, fold)
     flat = vertices(columns, rows, along, across, angle, 0.0)

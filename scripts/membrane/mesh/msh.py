@@ -31,24 +31,13 @@ READ = "versions 2 to 2.2, 4.0 and 4.1 are read"
 
 
 def read_msh(path: str | Path, unit: float = 1.0) -> SheetMesh:
-    """Read a triangulated sheet.
+    """Read a triangulated sheet; `unit` is the length of the file's unit [m].
 
     Quadrangles are cut in two, of elements of higher order the corners are taken; nodes that no
     triangle has are left out. A flat sheet is turned into a plane z = const if it lies in another
     one, and all its triangles counter-clockwise seen from +z.
 
-    Parameters
-    ----------
-    path
-    unit
-        Length of the file's unit [m].
-
-    Raises
-    ------
-    BadFile
-        Whatever is wrong, in one sentence.
-    OSError
-        If the file cannot be opened.
+    BadFile, in one sentence, for whatever is wrong; OSError if the file cannot be opened.
     """
     if not (np.isfinite(unit) and unit > 0):
         raise ValueError(f"unit = {unit} m: must be finite and > 0")

@@ -39,15 +39,8 @@ def laid_down(points: np.ndarray, normal: np.ndarray) -> np.ndarray:
 def faces_to_turn(faces: Any) -> np.ndarray:
     """Which faces (F,) bool run the other way round than most of those they hang together with.
 
-    Parameters
-    ----------
-    faces : sequence of (n,) int
-        Loops of vertices.
-
-    Raises
-    ------
-    ValueError
-        If there is no way round for all of them: the surface has one side only.
+    `faces` are loops (n,) of vertices. ValueError if there is no way round for all of them: the
+    surface has one side only.
     """
     along = defaultdict(list)
     for f, loop in enumerate(faces):

@@ -24,36 +24,16 @@ SHORTEST = 0.05  # of the mesh's sides: what splitting may leave
 
 @dataclass(frozen=True, eq=False)
 class SheetMesh:
-    """A triangulated sheet with creases, whatever it was made from. N nodes.
+    """A triangulated sheet with creases, whatever it was made from. N nodes."""
 
-    Attributes
-    ----------
-    nodes : (N, 3) float, node
-        Rest positions [m].
-    triangles : (T, 3) int, triangle
-        Corners, counter-clockwise seen from the top.
-    creases : (C, 2) int, side
-        Sides on creases.
-    crease_signs : (C,) int, side
-        +1 mountain, -1 valley.
-    start : (N, 3) float or None, node
-        Folded positions to start from [m]; None: flat.
-    groups : dict of (n,) int, node
-        Nodes by name, as a file names them.
-    others : tuple of str
-        Names of those groups that make no creases.
-    notes : tuple of str
-        Sentences about what was changed or is doubtful.
-    """
-
-    nodes: np.ndarray
-    triangles: np.ndarray
-    creases: np.ndarray
-    crease_signs: np.ndarray
-    start: np.ndarray | None = None
-    groups: dict = field(default_factory=dict)
-    others: tuple = ()
-    notes: tuple = ()
+    nodes: np.ndarray  #: (N, 3), rest positions [m]
+    triangles: np.ndarray  #: (T, 3) nodes, counter-clockwise seen from the top
+    creases: np.ndarray  #: (C, 2) nodes: sides on creases
+    crease_signs: np.ndarray  #: (C,) +1 mountain, -1 valley
+    start: np.ndarray | None = None  #: (N, 3), folded, to start from [m]; None: flat
+    groups: dict = field(default_factory=dict)  #: nodes (n,) by name, as a file names them
+    others: tuple = ()  #: names of those groups that make no creases
+    notes: tuple = ()  #: sentences about what was changed or is doubtful
 
     @property
     def area(self) -> float:
@@ -75,27 +55,12 @@ class SheetMesh:
 
 
 def mesh_pattern(pattern: Any, size: float | None = None) -> SheetMesh:
-    """Triangulate a crease pattern.
+    """SheetMesh of a CreasePattern, whose vertices that have film are its first nodes.
 
     Mountains and valleys become creases. Edges of other letters are sides of the mesh without
-    crease, cuts are open: their nodes are there once for each side. An unassigned edge folds
-    where its angle says so.
-
-    Parameters
-    ----------
-    pattern : CreasePattern
-    size : float, optional
-        Length of the sides to aim at [m], > 0; default: for about 800 triangles.
-
-    Returns
-    -------
-    SheetMesh
-        Its first nodes are the pattern's vertices that have film.
-
-    Raises
-    ------
-    ValueError
-        If `size` is out of range, or gmsh cannot mesh the pattern.
+    crease, cuts are open: their nodes are there once for each side. An unassigned edge folds where
+    its angle says so. `size`, > 0, is the length of the sides to aim at [m], by default for about
+    800 triangles. ValueError if it is out of range, or gmsh cannot mesh the pattern.
     """
     size = default_size(pattern.area) if size is None else size
     if not (np.isfinite(size) and size > 0):
@@ -392,13 +357,8 @@ def mean_value_coordinates(
 ) -> np.ndarray:
     """Weights (n, V) with which vertices of a polygon give its inner points, summing to 1.
 
-    Parameters
-    ----------
-    points : (n, 3) float
-        Inside, not on a side; in the plane z = 0.
-    vertices : (V, 3) float
-    sides : (m, 2) int
-        The polygon on the left of each.
+    `points` (n, 3) lie inside, not on a side, in the plane z = 0; the polygon is on the left of
+    each of `sides` (m, 2) between `vertices` (V, 3).
     """
     weights = np.zeros((len(points), len(vertices)))
     for a, b in sides:
@@ -418,19 +378,9 @@ def mean_value_coordinates(
 def split_along(triangles: np.ndarray, cuts: Any) -> Any:
     """Open a mesh along sides: nodes are doubled where the cut lets their triangles part.
 
-    A cut's end inside the film stays one node.
-
-    Parameters
-    ----------
-    triangles : (T, 3) int
-    cuts : (K, 2) int
-        Sides.
-
-    Returns
-    -------
-    origin : (N + D,) int
-        Node that each node is a copy of; the first N are themselves.
-    triangles : (T, 3) int
+    A cut's end inside the film stays one node. `triangles` (T, 3) are opened along `cuts` (K, 2).
+    Gives the node that each node is a copy of (N + D,), of which the first N are themselves, and
+    the new triangles (T, 3).
     """
     triangles = np.array(triangles)
     count = int(triangles.max()) + 1

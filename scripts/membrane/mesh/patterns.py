@@ -31,35 +31,19 @@ ROUNDS = 1000  # of evening out an unrolled sheet, at most
 class CreasePattern:
     """A flat sheet of V vertices, E edges, F faces.
 
-    Attributes
-    ----------
-    vertices : (V, 3) float
-        Flat positions [m], z = 0.
-    edges : (E, 2) int
-        Vertices.
-    letters : (E,) str
-        B, M, V, F, U, C, J as in FOLD.
-    angles : (E,) float or None
-        Fold angles [deg], positive valley.
-    faces : tuple of (n,) int
-        Vertices of each face, counter-clockwise, holes and slits run through with the rest: sides
-        are those from each vertex to the next.
-    holes : tuple of tuple of (n,) int
-        For each face further loops round its holes, clockwise.
-    folded : (V, 3) float or None
-        Where the folded sheet starts [m].
-    notes : tuple of str
-        Sentences about what was changed.
+    Sides of a face are those from each vertex of a loop to the next; its outer loop runs
+    counter-clockwise, holes and slits run through with the rest, further loops round its holes
+    clockwise.
     """
 
-    vertices: np.ndarray
-    edges: np.ndarray
-    letters: np.ndarray
-    angles: np.ndarray | None
-    faces: tuple
-    holes: tuple
-    folded: np.ndarray | None = None
-    notes: tuple = ()
+    vertices: np.ndarray  #: (V, 3), flat [m], z = 0
+    edges: np.ndarray  #: (E, 2) vertices
+    letters: np.ndarray  #: (E,) B, M, V, F, U, C, J as in FOLD
+    angles: np.ndarray | None  #: (E,) fold angles [deg], positive valley
+    faces: tuple  #: vertices (n,) of each face
+    holes: tuple  #: loops (n,) round the holes of each face, in a tuple
+    folded: np.ndarray | None = None  #: (V, 3), where the folded sheet starts [m]
+    notes: tuple = ()  #: sentences about what was changed
 
     @property
     def size(self) -> float:
@@ -86,7 +70,7 @@ class CreasePattern:
 def crease_pattern(
     content: Any, unit: float | None = None, start: int | None = None, unfolded: bool = False
 ) -> CreasePattern:
-    """The pattern that a FOLD file describes, with its folded start if the file has one.
+    """The pattern that a FoldFile describes, with its folded start if the file has one.
 
     The flat sheet is the first frame that lies in the plane and is no folded form; if there is
     none, the folded form is unrolled. The folded start is the frame `start`; by default the first
@@ -95,17 +79,12 @@ def crease_pattern(
 
     Parameters
     ----------
-    content : FoldFile
     unit : float, optional
         Length of the file's unit [m]; needed where the file names no physical one.
     start : int, optional
         Number of a frame, 0 the key frame.
     unfolded : bool
         The sheet will start flat: no folded start is an error.
-
-    Returns
-    -------
-    CreasePattern
 
     Raises
     ------
@@ -325,24 +304,10 @@ def _side_of(a, b, points):
 def find_faces(vertices: np.ndarray, edges: np.ndarray, letters: Any) -> Any:
     """Faces of the planar graph of the edges, by walking round each with the face on the left.
 
-    Whether a face is of film or a hole follows from the border edges: film lies inside an odd
-    number of them.
-
-    Parameters
-    ----------
-    vertices : (V, 3) float
-        In the plane z = 0.
-    edges : (E, 2) int
-        They meet at vertices only.
-    letters : (E,) str
-        B where the film ends.
-
-    Returns
-    -------
-    faces : tuple of (n,) int
-        Vertices of the outer loop of each face of film, counter-clockwise.
-    holes : tuple of tuple of (n,) int
-        Loops round the holes of each, and round whatever lies free inside it, clockwise.
+    Whether a face is of film or a hole follows from the border edges, of letter B: film lies inside
+    an odd number of them. `vertices` (V, 3) lie in the plane z = 0, `edges` (E, 2) meet at vertices
+    only, `letters` are (E,). Gives the outer loop (n,) of each face of film, counter-clockwise, and
+    for each the loops round its holes, and round whatever lies free inside it, clockwise.
     """
     _check_touching(vertices, edges)
     loops, loop_of = _walk(vertices, edges)
@@ -382,14 +347,9 @@ def _check_touching(vertices, edges):
 
 
 def _walk(vertices, edges):
-    """Closed walks along the edges, each with one face on its left.
+    """Closed walks along the edges, each with one face on its left: list of vertices (n,).
 
-    Returns
-    -------
-    loops : list of (n,) int
-        Vertices.
-    loop_of : dict
-        Number of the loop that runs along (a, b), for both directions of each edge.
+    Also a dict of the number of the walk along (a, b), for both directions of each edge.
     """
     ways = defaultdict(list)
     for a, b in np.concatenate([edges, edges[:, ::-1]]).tolist():
@@ -467,10 +427,7 @@ def _loop_area(vertices, loop):
 def face_pairs(pattern: Any) -> Any:
     """The faces on the left and on the right of each edge (E, 2), -1 for none.
 
-    Raises
-    ------
-    ValueError
-        If a face has a side that is no edge, or two faces lie on the same side of an edge.
+    ValueError if a face has a side that is no edge, or two faces lie on the same side of an edge.
     """
     number = {tuple(pair): (e, 0) for e, pair in enumerate(pattern.edges.tolist())}
     number |= {(b, a): (e, 1) for (a, b), (e, _) in list(number.items())}
@@ -537,12 +494,8 @@ def _neighbours(pattern, pairs):
 def fold_by_angles(pattern: Any) -> np.ndarray:
     """Vertices (V, 3) [m] of the pattern folded by its angles, every face kept rigid.
 
-    The first face stays where it is; each other one hangs on a chain of creases.
-
-    Raises
-    ------
-    ValueError
-        If the angles do not go together: a vertex would be in two places.
+    The first face stays where it is; each other one hangs on a chain of creases. ValueError if the
+    angles do not go together: a vertex would be in two places.
     """
     placed = {0: (np.eye(3), np.zeros(3))}
     for face, other, _, a, b, angle in _outwards(pattern):
@@ -577,13 +530,7 @@ def fold_by_angles(pattern: Any) -> np.ndarray:
 def fold_angles_of(pattern: Any, places: np.ndarray, pairs: Any) -> Any:
     """Fold angles (E,) [deg] of the edges in a folded form, positive valley, 0 on the border.
 
-    Parameters
-    ----------
-    pattern : CreasePattern
-    places : (V, 3) float
-        Vertices of the folded form [m].
-    pairs : (E, 2) int
-        What `face_pairs` gives.
+    `places` (V, 3) are the vertices of the folded form [m], `pairs` (E, 2) what `face_pairs` gives.
     """
     normals = np.array([_normal(places[face]) for face in pattern.faces])
     a, b = pattern.edges.T
@@ -635,15 +582,9 @@ def _evened_out(pattern, ids, flat):
     """Vertices (V, 3) [m] in the plane on which the faces agree as well as can be.
 
     Each face is laid as it best fits, each vertex then into the middle of where its faces put it,
-    round by round (shape matching: Mueller et al., ACM Trans. Graph. 24 (2005) 471).
-
-    Parameters
-    ----------
-    pattern : CreasePattern
-    ids : (n,) int
-        Vertices of all faces, one face after the other.
-    flat : list of (m,) complex
-        Where each face puts its own [m].
+    round by round (shape matching: Mueller et al., ACM Trans. Graph. 24 (2005) 471). `ids` (n,) are
+    the vertices of all faces, one face after the other; `flat` is where each puts its own, a list
+    of complex (m,) [m].
     """
     sizes = [len(z) for z in flat]
     face = np.repeat(np.arange(len(flat)), sizes)

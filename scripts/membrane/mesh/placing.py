@@ -14,49 +14,24 @@ TURN = np.radians(20)  # by which the outline turns at a corner, at least
 
 @dataclass(frozen=True, eq=False)
 class PatternSail:
-    """A sheet placed on the spin axis. N nodes.
+    """A SheetMesh placed on the spin axis. N nodes."""
 
-    Attributes
-    ----------
-    nodes : (N, 3) float, node
-        Rest positions [m].
-    triangles, creases, crease_signs
-        As of a SheetMesh.
-    start : (N, 3) float, node
-        Positions to start from [m].
-    tips, hub : (n,) int, node
-        With tip masses; driven.
-    lines : tuple
-        Sides (E, 2) and FOLD letters (E,) of the mesh.
-    given : (N, 3) float, node
-        Rest positions as in the file [m].
-    used : tuple of str
-        Names of the file's groups that are tips or hub.
-    """
-
-    nodes: np.ndarray
-    triangles: np.ndarray
+    nodes: np.ndarray  #: (N, 3), rest positions [m]
+    triangles: np.ndarray  #: as of a SheetMesh, and the creases
     creases: np.ndarray
     crease_signs: np.ndarray
-    start: np.ndarray
-    tips: np.ndarray
-    hub: np.ndarray
-    lines: tuple
-    given: np.ndarray
-    used: tuple = ()
+    start: np.ndarray  #: (N, 3), to start from [m]
+    tips: np.ndarray  #: (n,) nodes with tip masses
+    hub: np.ndarray  #: (n,) nodes that are driven
+    lines: tuple  #: sides (E, 2) and FOLD letters (E,) of the mesh
+    given: np.ndarray  #: (N, 3), rest positions as in the file [m]
+    used: tuple = ()  #: names of the file's groups that are tips or hub
 
 
 def place(sheet: Any, p: Any) -> PatternSail:
     """Put a SheetMesh on the spin axis, choose its tips and its hub by PatternParameters `p`.
 
-    Returns
-    -------
-    PatternSail
-
-    Raises
-    ------
-    ValueError
-        If no node lies within the hub's radius.
+    ValueError if no node lies within the hub's radius.
     """
     named = p.tips == "corners" and len(sheet.groups.get("tips", ())) > 0
     tips = sheet.groups["tips"] if named else _tips(sheet, p.tips)

@@ -13,13 +13,9 @@ LONGER = 3.0  # times as long the step would be without them, at least
 
 
 def described(sheet: Any, sail: Any) -> str:
-    """One line about what was read: size, triangles, creases, tips, hub, groups not used.
+    """One line about a SheetMesh: size, triangles, creases, tips, hub, groups not used.
 
-    Parameters
-    ----------
-    sheet : SheetMesh
-    sail : PatternSail
-        The same, placed on the axis.
+    `sail` is the same as a PatternSail, placed on the axis.
     """
     extent = np.ptp(sheet.nodes, axis=0)
     size = " x ".join(f"{x:.4g}" for x in extent[: 3 if extent[2] > 0 else 2])
@@ -67,26 +63,11 @@ def slow_sides(
     """The few sides without which the time step could be much longer.
 
     The step that a side allows is estimated from its ends, each moved alone: exact for a side much
-    stiffer than all about it, and for a lattice of equal triangles.
+    stiffer than all about it, and for a lattice of equal triangles. Of `nodes` (N, 3) [m] at rest,
+    `sides` (E, 2), `stiffnesses` (E,) [N/m], `masses` (N,) [kg] and a damping ratio `zeta` [-].
 
-    Parameters
-    ----------
-    nodes : (N, 3) float
-        Rest positions [m].
-    sides : (E, 2) int
-    stiffnesses : (E,) float
-        [N/m].
-    masses : (N,) float
-        [kg].
-    zeta : float
-        Damping ratio [-].
-
-    Returns
-    -------
-    rows : (n,) int
-        Of `sides`, the worst first, at most FEW; none if many sides are alike.
-    longer : float
-        By which factor the step would be longer without these sides and their nodes.
+    Gives rows (n,) of `sides`, the worst first, at most FEW, or none if many sides are alike; and
+    by which factor the step would be longer without these sides and their nodes.
     """
     along = nodes[sides[:, 1]] - nodes[sides[:, 0]]
     along /= np.linalg.norm(along, axis=1, keepdims=True)

@@ -23,69 +23,30 @@ LINE_KINDS = {"film": 0, "crease": 1, "seam": 2, "tether": 3}
 class SailMesh:
     """Flat sail with tethers. N nodes of which F in the film, K rows of nodes, n = `refine`.
 
-    Attributes
-    ----------
-    outer_width, inner_width : float
-        Widths of the square and of its square hole [m].
-    fold_lines : int
-        Fold lines on each petal; there is one strip more.
-    refine : int
-        Sub-strips in a strip, and cells in a base cell.
-    spool_radius : float
-        Radius of the central spool [m].
-    tether_segments : int
-        Segments of each of the four tethers.
-    nodes : (N, 3) float, node
-        Flat rest positions [m], first the F nodes of the film, then those of the tethers.
-    triangles : (T, 3) int, triangle
-        Corners, counter-clockwise seen from +z.
-    sides : (E, 2) int, side
-        All sides of the film, the smaller node id first.
-    creases : (C, 2) int, side
-        Sides on the fold lines, running counter-clockwise about the axis.
-    crease_signs : (C,) int, side
-        +1 mountain (sticks out at the +z side when folded), -1 valley.
-    seam_sides : (4 (K - 1), 2) int, side
-        Sides on the diagonal seams, from the inside outwards.
-    cables : (4 tether_segments, 2) int, side
-        Tether segments, from the spool to the corner.
-    anchors : (4,) int, node
-        Inner ends of the tethers, on the spool.
-    tether_nodes : (4 tether_segments,) int, node
-        All nodes that are not in the film, anchors included.
-    tips, inner_corners : (4,) int, node
-        Outer and inner corners, at azimuth 45, 135, 225, 315 degrees.
-    outer_edge : (4 M,) int, node
-        Closed loop of the outer edge, counter-clockwise from 315 degrees, first node not repeated.
-    outer_edge_middles : (4, 2) int, node
-        Node(s) nearest the middle of each petal's outer edge; the same one twice if one is nearest.
-    guide_nodes : (4, G) int, node
-        For each petal the nodes at most half a base cell from its middle, on all rows.
-    rows : tuple of K arrays (4, cells + 1) int, node
-        Node ids of each row for each petal, with s rising; both ends are seam nodes.
+    All arrays but `nodes` and the signs hold ids of nodes.
     """
 
-    outer_width: float
-    inner_width: float
-    fold_lines: int
-    refine: int
-    spool_radius: float
-    tether_segments: int
-    nodes: np.ndarray
-    triangles: np.ndarray
-    sides: np.ndarray
-    creases: np.ndarray
-    crease_signs: np.ndarray
-    seam_sides: np.ndarray
-    cables: np.ndarray
-    anchors: np.ndarray
-    tether_nodes: np.ndarray
-    tips: np.ndarray
-    inner_corners: np.ndarray
-    outer_edge: np.ndarray
-    outer_edge_middles: np.ndarray
-    guide_nodes: np.ndarray
-    rows: tuple
+    outer_width: float  #: of the square [m]
+    inner_width: float  #: of its square hole [m]
+    fold_lines: int  #: on each petal; there is one strip more
+    refine: int  #: sub-strips in a strip, and cells in a base cell
+    spool_radius: float  #: of the central spool [m]
+    tether_segments: int  #: of each of the four tethers
+    nodes: np.ndarray  #: (N, 3), flat rest positions [m]; first the film's, then the tethers'
+    triangles: np.ndarray  #: (T, 3), counter-clockwise seen from +z
+    sides: np.ndarray  #: (E, 2), all of the film, the smaller node first
+    creases: np.ndarray  #: (C, 2), sides on the fold lines, counter-clockwise about the axis
+    crease_signs: np.ndarray  #: (C,) +1 mountain: sticks out at +z when folded; -1 valley
+    seam_sides: np.ndarray  #: (4 (K - 1), 2), on the diagonals, from the inside outwards
+    cables: np.ndarray  #: (4 tether_segments, 2), from the spool to the corner
+    anchors: np.ndarray  #: (4,), inner ends of the tethers, on the spool
+    tether_nodes: np.ndarray  #: (4 tether_segments,), all not in the film, anchors included
+    tips: np.ndarray  #: (4,), outer corners, at azimuth 45, 135, 225, 315 degrees
+    inner_corners: np.ndarray  #: (4,), at the same azimuths
+    outer_edge: np.ndarray  #: (4 M,), closed loop, counter-clockwise from 315 degrees, none twice
+    outer_edge_middles: np.ndarray  #: (4, 2), nearest each outer edge's middle; one may be twice
+    guide_nodes: np.ndarray  #: (4, G), at most half a base cell from each petal's middle, all rows
+    rows: tuple  #: K arrays (4, cells + 1), by petal with s rising; both ends are on seams
 
     @property
     def strips(self) -> int:
@@ -133,33 +94,26 @@ def sail_mesh(
     spool_radius: float = 0.025,
     tether_segments: int = 4,
 ) -> SailMesh:
-    """Mesh of the flat sail with its tethers.
+    """SailMesh of the flat sail with its tethers.
 
-    A base cell is about as long as a strip is wide; from one fold line to the next a row gains
-    two cells, so that the cells keep their length. `refine` = n cuts strips and cells in n.
+    A base cell is about as long as a strip is wide; from one fold line to the next a row gains two
+    cells, so that the cells keep their length. `refine` = n cuts strips and cells in n.
 
     Parameters
     ----------
     outer_width, inner_width : float
         Widths of the sail and of its square hole [m], 0 < inner_width < outer_width.
-    fold_lines : int
-        Fold lines on each petal, >= 1.
-    refine : int
-        Sub-strips of a strip and sub-cells of a base cell, >= 1.
+    fold_lines, refine : int
+        Fold lines on each petal; sub-strips of a strip and sub-cells of a base cell; >= 1.
     spool_radius : float
-        Radius of the spool [m], > 0, less than the diagonal radius of the inner corners.
+        Of the spool [m], > 0, less than the diagonal radius of the inner corners.
     tether_segments : int
         Segments of each tether, >= 1.
-
-    Returns
-    -------
-    SailMesh
 
     Raises
     ------
     ValueError
-        Naming the parameter and its range, if one is out of range, or if the hole is less than
-        2.5 strips wide.
+        Naming the parameter and its range, or if the hole is less than 2.5 strips wide.
     """
     _check(outer_width, inner_width, fold_lines, refine, spool_radius, tether_segments)
     strip = (outer_width - inner_width) / 2 / (fold_lines + 1)
@@ -210,24 +164,10 @@ def mesh_of(p: Any) -> SailMesh:
 def sheet_mesh(rows: int, columns: int, spacing: float) -> tuple[np.ndarray, np.ndarray]:
     """Mesh of a flat rectangular sheet of squares, each cut in two along the same diagonal.
 
-    Parameters
-    ----------
-    rows, columns : int
-        Nodes along y and along x, >= 2.
-    spacing : float
-        Side of the squares [m], > 0.
-
-    Returns
-    -------
-    nodes : (rows columns, 3) float
-        Positions [m] row by row, from the origin along +x and then +y, in the plane z = 0.
-    triangles : (2 (rows - 1) (columns - 1), 3) int
-        Corners, counter-clockwise seen from +z, square by square in the order of the nodes.
-
-    Raises
-    ------
-    ValueError
-        Naming the parameter and its range, if one is out of range.
+    Of `rows` along y and `columns` along x, >= 2 nodes each, and squares of side `spacing` [m], >
+    0. Gives nodes (rows columns, 3) [m] row by row, from the origin along +x and then +y, in the
+    plane z = 0, and triangles (2 (rows - 1) (columns - 1), 3), counter-clockwise seen from +z,
+    square by square in the order of the nodes. ValueError names a parameter that is out of range.
     """
     counts: dict = {"rows": rows, "columns": columns}
     for name, value in counts.items():

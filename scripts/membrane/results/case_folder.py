@@ -91,12 +91,8 @@ def look(folder: str | Path, wanted: dict | None = None) -> Status:
 def finished(folder: Path, wanted: dict | None = None) -> Status | None:
     """The Status of the finished case in a folder; None if there is none yet.
 
-    Raises
-    ------
-    Damaged
-        If it holds something else, or a case that is not whole.
-    Another
-        If it holds another case than `wanted`.
+    Damaged if it holds something else, or a case that is not whole; Another if it holds another
+    case than `wanted`.
     """
     if not os.path.lexists(folder) or _is_begun(folder):
         return None

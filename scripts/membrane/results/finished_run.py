@@ -17,43 +17,20 @@ TETHER = 2  # the series' field `kind`
 
 @dataclass(frozen=True, eq=False)
 class FinishedRun:
-    """N nodes, T triangles, S shapes.
-
-    Attributes
-    ----------
-    folder : Path
-    parameters : RunParameters
-    summary : dict
-        What is in summary.json.
-    history : dict of (R,) float
-        Columns of history.csv.
-    shapes : list of (float, Path)
-        Times [s] and .vtu files.
-    triangles : (T, 3) int, node
-    creases, crease_signs : (C, 2) int, node; (C,) int
-        Fold lines, and MOUNTAIN or VALLEY.
-    cables : (K, 2) int, node
-        Tethers.
-    tips : (n,) int, node
-        With tip masses.
-    spool : (float, float) or None
-        Its radius and height [m].
-    has_hub : bool
-        Whether nodes turn with a hub.
-    """
+    """N nodes, T triangles, S shapes; arrays of int hold ids of nodes."""
 
     folder: Path
     parameters: RunParameters
-    summary: dict
-    history: dict
-    shapes: list
-    triangles: np.ndarray
-    creases: np.ndarray
-    crease_signs: np.ndarray
-    cables: np.ndarray
-    tips: np.ndarray
-    spool: tuple | None
-    has_hub: bool
+    summary: dict  #: what is in summary.json
+    history: dict  #: columns (R,) of history.csv by name
+    shapes: list  #: times [s] and .vtu files, (float, Path)
+    triangles: np.ndarray  #: (T, 3)
+    creases: np.ndarray  #: (C, 2), fold lines
+    crease_signs: np.ndarray  #: (C,), MOUNTAIN or VALLEY
+    cables: np.ndarray  #: (K, 2), tethers
+    tips: np.ndarray  #: (n,), with tip masses
+    spool: tuple | None  #: its radius and height [m]
+    has_hub: bool  #: whether nodes turn with a hub
 
     def turned(self, times: Any) -> np.ndarray:
         """Angles (n,) [rad] since the start by which hub or sail have turned at `times` (n,) [s].
@@ -74,12 +51,8 @@ class FinishedRun:
 def read_run(folder: str | Path) -> FinishedRun:
     """The FinishedRun of an output folder of `deploy`, `case`, `sail`, `miura` or `ikaros`.
 
-    Raises
-    ------
-    ValueError
-        In one sentence that names the file, if there is something wrong with it.
-    OSError
-        If one is missing.
+    ValueError, in one sentence that names the file, if there is something wrong with it; OSError if
+    one is missing.
     """
     folder = Path(folder)
     file = folder / "summary.json"

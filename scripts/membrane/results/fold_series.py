@@ -16,17 +16,8 @@ def write_series(
 ) -> None:
     """Write a PatternSail and its shapes; all other sides inside the film are J, its edge B.
 
-    Parameters
-    ----------
-    path : path
-    sail : PatternSail
-        The key frame.
-    times : (F,) float
-        [s]
-    shapes : (F, N, 3) float
-        [m]
-    custom : dict
-        What all frames tell under keys of the namespace `membrane:`.
+    The sail is the key frame; `shapes` (F, N, 3) [m] at `times` (F,) [s] follow. `custom` is what
+    all frames tell under keys of the namespace `membrane:`.
     """
     sides, letters = sail.lines
     flat = np.ptp(sail.nodes[:, 2]) == 0

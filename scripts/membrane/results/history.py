@@ -14,10 +14,7 @@ from ..files import BadFile, is_value, read_text, shown
 def read_history(path: str | Path) -> dict[str, np.ndarray]:
     """Columns of a .csv file as HistoryWriter makes them: dict of (S,) float by name.
 
-    Raises
-    ------
-    BadFile
-        If it is no complete table, under names that differ, with finite numbers.
+    BadFile if it is no complete table, under names that differ, with finite numbers.
     """
     text = read_text(path)
     if not text.endswith("\n"):
@@ -38,21 +35,10 @@ def columns_of(
 ) -> dict[str, np.ndarray]:
     """Columns of a table that has been read: dict of (S,) float by name.
 
-    Parameters
-    ----------
-    path : path
-    names : list of str
-    rows : list of (int, list of str)
-        Number of the line, and its cells.
-    wanted : collection of str
-        Names of the columns to give, where there are such; others may hold anything.
-    first : int
-        Number of the line that holds the names.
-
-    Raises
-    ------
-    BadFile
-        If names are missing or alike, or values are missing or no finite numbers.
+    `rows` are pairs of the number of the line and its cells, texts. Only columns of names that are
+    `wanted` are given, where there are such; others may hold anything. `first` is the number of the
+    line that holds the `names`. BadFile if names are missing or alike, or values are missing or no
+    finite numbers.
     """
     if not _are_names(names):
         raise BadFile(path, f"line {first}", "must name every column, each otherwise")

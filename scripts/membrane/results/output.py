@@ -37,19 +37,12 @@ class VtkSeries:
     """Time series of one set of cells: a .vtu file for each frame and a .pvd file of times.
 
     Open `folder`/`name`.pvd in ParaView. It is complete after each frame, so it can be read at any
-    time, also after a crash. Write the film's triangles and its lines (sides, creases, tethers)
-    as two series.
+    time, also after a crash. Write the film's triangles and its lines (sides, creases, tethers) as
+    two series.
 
-    Parameters
-    ----------
-    folder : path
-        Made if missing.
-    name : str
-        Stem of the files; those of an earlier series of this name are removed.
-    cells : (M, 2) or (M, 3) int
-        Node ids of lines or of triangles, the same in all frames.
-    times : sequence of float
-        Times [s] of the frames to keep of an earlier series, which this one continues.
+    The folder is made if missing; files of an earlier series of this name are removed, but for
+    frames at `times` [s], which this one continues. `cells`, (M, 2) or (M, 3), are node ids of
+    lines or of triangles, the same in all frames.
     """
 
     def __init__(self, folder: str | Path, name: str, cells: np.ndarray, times: Any = ()) -> None:
@@ -70,21 +63,10 @@ class VtkSeries:
             self._list_frames()
 
     def write(self, time: float, positions: np.ndarray, cell_data: dict | None = None) -> None:
-        """Append a frame.
+        """Append a frame at a `time` [s] later than that of the one before; returns its .vtu Path.
 
-        Parameters
-        ----------
-        time : float
-            Time [s], later than that of the frame before.
-        positions : (N, 3) float
-            Positions of the nodes [m].
-        cell_data : dict of (M,) float or int, or (M, 3) float, optional
-            Values at the cells by name, for instance `area_strain`.
-
-        Returns
-        -------
-        Path
-            The .vtu file.
+        `positions` (N, 3) [m] are of the nodes; `cell_data` has values (M,) or vectors (M, 3) at the
+        cells by name, for instance `area_strain`. NotFinite, a ValueError, if one is no finite number.
         """
         if self.frames and time <= self.frames[-1][0]:
             raise ValueError(f"time = {time} s: must be > {self.frames[-1][0]} s, the last frame's")
@@ -167,16 +149,9 @@ def _pvd_line(time, file):
 class HistoryWriter:
     """Table of scalars over time as .csv: a line of names, then a line for each call of `write`.
 
-    Each line reaches the file at once. The units go to a .units.json file of the same stem.
-
-    Parameters
-    ----------
-    path : path
-        The .csv file; overwritten.
-    units : dict of str
-        Unit by column name, in the order of the columns; "-" for none.
-    state : dict, optional
-        What `state()` gave of an earlier table, which this one continues.
+    Each line reaches the file at once. The `units` by column name, in the order of the columns, "-"
+    for none, go to a .units.json file of the same stem. The file at `path` is overwritten, unless
+    there is a `state`: what `state()` gave of an earlier table, which this one continues.
     """
 
     def __init__(self, path: str | Path, units: dict[str, str], state: dict | None = None) -> None:
@@ -204,10 +179,7 @@ class HistoryWriter:
     def write(self, values: dict) -> None:
         """Append a line; `values` gives a finite number for every column by name.
 
-        Raises
-        ------
-        ValueError
-            If a column is missing or unknown; NotFinite, if its value is no finite number.
+        ValueError if a column is missing or unknown; NotFinite, if its value is no finite number.
         """
         wrong = sorted(set(values) ^ set(self.columns))
         if wrong:
@@ -250,10 +222,7 @@ def is_whole_table(path: str | Path, state: dict) -> bool:
 def list_series(path: str | Path) -> list[tuple[float, Path]]:
     """Times [s] and .vtu files of a .pvd file of VtkSeries: list of (float, Path), not empty.
 
-    Raises
-    ------
-    BadFile
-        If it is no list of files in its own folder at rising times.
+    BadFile if it is no list of files in its own folder at rising times.
     """
     path = Path(path)
     try:

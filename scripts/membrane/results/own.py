@@ -26,16 +26,8 @@ RUN, CASE, CALIBRATION, SWEEP = "a run", "a case", "a calibration", "a sweep"  #
 def held(folder: Path, busy: str = "") -> Iterator[None]:
     """Hold a folder that is ours as a whole, and is made if it is missing, as the only process.
 
-    Parameters
-    ----------
-    folder : Path
-    busy : str
-        What to say if another process holds it; "": wait for that one.
-
-    Raises
-    ------
-    ValueError
-        If it is not ours, another process holds it, or somebody has put a link into it.
+    `busy` is what to say if another process holds it; "": wait for that one. ValueError if it is
+    not ours, another process holds it, or somebody has put a link into it.
     """
     while True:
         lock = _open_lock(folder)
@@ -130,10 +122,7 @@ def remove(folder: Path) -> None:
 def listed(folder: Path, kind: str) -> set[str]:
     """Names of the results in a folder of the user's that are ours to replace.
 
-    Raises
-    ------
-    ValueError
-        If it holds results of another kind, or the list is not ours.
+    ValueError if it holds results of another kind, or the list is not ours.
     """
     found, names = _list(folder)
     if found not in (None, kind):

@@ -44,22 +44,13 @@ def new_results(
 
     Where the block ends by an error, `folder` holds what it held before and, in
     `folder`/unfinished, what the run had written; the next run begins by removing that, unless it
-    can go on from there: then the reason is kept, too, and it waits for another process's run.
+    can go on from there: then the reason is kept, too, and it waits for another process's run. What
+    is in `folder` and not listed as ours is left alone.
 
-    Parameters
-    ----------
-    folder : path
-        Made if missing. What is in it and not listed as ours is left alone.
-    kind : str
-        Of the results: own.RUN, CASE or CALIBRATION.
-    resume : dict, optional
-        What a run that can go on is about, ready for JSON: "sail", "parameters" and others. What
-        an earlier process has left that was about the same is kept.
-
-    Raises
-    ------
-    ValueError
-        If another process writes there, or something of another's or a case would be lost.
+    `kind` is own.RUN, CASE or CALIBRATION. `resume` is what a run that can go on is about, ready
+    for JSON: "sail", "parameters" and others; what an earlier process has left that was about the
+    same is kept. ValueError if another process writes there, or something of another's or a case
+    would be lost.
     """
     folder = Path(folder)
     part = folder / UNFINISHED

@@ -16,27 +16,10 @@ ADDING = {"rest state": 2, "bodies": 2, "interactions": 6}  # stages and their s
 def film(
     young: float = 3.2e9, poisson: float = 0.34, density: float = 1420.0, thickness: float = 7.5e-6
 ) -> Any:
-    """Material of the film; the defaults are those of the paper's Table 1.
+    """MembraneMat of the film; the defaults are those of the paper's Table 1.
 
-    Parameters
-    ----------
-    young : float
-        Young's modulus E [Pa], > 0.
-    poisson : float
-        Poisson's ratio nu [-], in (-1, 0.5].
-    density : float
-        rho [kg/m3], > 0.
-    thickness : float
-        h [m], > 0.
-
-    Returns
-    -------
-    MembraneMat
-
-    Raises
-    ------
-    ValueError
-        If one is out of range.
+    Young's modulus E [Pa], > 0; Poisson's ratio nu [-], in (-1, 0.5]; density rho [kg/m3], > 0;
+    thickness h [m], > 0. ValueError if one is out of range.
     """
     return yade.MembraneMat(young=young, poisson=poisson, density=density, thickness=thickness)
 
@@ -53,7 +36,7 @@ def add_membrane(
     interactions: bool = True,
     **options: Any,
 ) -> Any:
-    """Add a membrane to the scene: one sphere a node, one interaction a side.
+    """Add a Membrane to the scene: one sphere a node, one interaction a side.
 
     Parameters
     ----------
@@ -61,10 +44,9 @@ def add_membrane(
         Rest positions [m].
     triangles : (T, 3) int
         Node ids, counter-clockwise seen from the top.
-    creases : (C, 2) int
-        Node ids of the sides on fold lines, each between two triangles.
-    crease_signs : (C,) int
-        +1 mountain, -1 valley, seen from the top.
+    creases, crease_signs : (C, 2) and (C,) int
+        Node ids of sides on fold lines, each between two triangles; +1 mountain, -1 valley, seen
+        from the top.
     cables : (K, 2) int
         Node ids of tether segments.
     positions : (N, 3) float, optional
@@ -77,10 +59,6 @@ def add_membrane(
         False: none, as the path "fused" needs none; path "law2" adds them later.
     **options
         Further attributes of Membrane: alpha, alphaCrease, pointMasses, cableStiffness, …
-
-    Returns
-    -------
-    Membrane
 
     Raises
     ------

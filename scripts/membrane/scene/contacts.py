@@ -20,17 +20,9 @@ SHAPES = {
 def check(bodies: Sequence[int], integrated: int) -> None:
     """Refuse what nodes would fall through, or what would not move.
 
-    Parameters
-    ----------
-    bodies : sequence of int
-        Ids of bodies that are not nodes.
-    integrated : int
-        Mask of NewtonIntegrator.
-
-    Raises
-    ------
-    ValueError
-        Naming the first body that has bounds but cannot be touched, or that nothing would move.
+    Of `bodies`, ids of those that are not nodes; `integrated` is the mask of NewtonIntegrator.
+    ValueError names the first body that has bounds but cannot be touched, or that nothing would
+    move.
     """
     for body in (yade.Omega().bodies[i] for i in bodies):
         if body.isClump:

@@ -11,23 +11,10 @@ from ..measures import moment_of_inertia
 
 
 def add(forces: Any, bodies: Sequence[int], spool: Any, inertia: float, omega: float) -> Any:
-    """Engine of a free hub.
+    """FreeHub that turns `bodies` of the membrane of `forces`, a MembraneForceEngine, by their ids.
 
-    Parameters
-    ----------
-    forces : MembraneForceEngine
-    bodies : sequence of int
-        Ids of the membrane's bodies that turn with the hub.
-    spool : SpoolRotation
-        Of the hub's facets; without any it is left alone.
-    inertia : float
-        About z [kg m2], without those bodies, >= 0.
-    omega : float
-        Spin at the beginning [rad/s].
-
-    Returns
-    -------
-    FreeHub
+    `spool` is the SpoolRotation of the hub's facets, left alone without any; `inertia` is about z
+    [kg m2], without those bodies, >= 0; `omega` is the spin at the beginning [rad/s].
     """
     node = {body: i for i, body in enumerate(forces.membrane.bodyIds)}
     nodes = [node[body] for body in bodies]

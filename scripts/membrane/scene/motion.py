@@ -113,14 +113,13 @@ def spin_up(
     begun: dict | None = None,
     keep: Callable | None = None,
 ) -> dict:
-    """Bring the sail to rest in a frame that turns at `omega` (paper, 3.3).
+    """Bring a MembraneScene to rest in a frame that turns at `omega` [rad/s] (paper, 3.3).
+
+    Its guide nodes and tether ends must be held. Gives simulated "time" [s], "steps", "residual"
+    [-].
 
     Parameters
     ----------
-    sail : MembraneScene
-        Its guide nodes and tether ends must be held.
-    omega : float
-        Spin rate [rad/s].
     tolerance : float
         Ends when `residual_energy` [-] has stayed below it for two batches, > 0.
     damping : float
@@ -135,11 +134,6 @@ def spin_up(
         What `keep` was given when the scene was saved that is now to go on.
     keep : callable, optional
         Called after each batch but the last, with a dict that a later `begun` takes.
-
-    Returns
-    -------
-    dict
-        simulated time [s], steps, residual [-].
 
     Raises
     ------
@@ -182,18 +176,10 @@ def spin_up(
 
 
 def release(sail: MembraneScene, omega: float, held: Sequence[int]) -> None:
-    """Go over to the inertial frame and let the `held` nodes go (paper, 3.3).
+    """Go over to the inertial frame and let the `held` nodes of the mesh go (paper, 3.3).
 
-    At the release v = omega x r everywhere. The leapfrog's velocities lie half a step before, and
-    follow from the accelerations of the nodes once they are free: v - a dt / 2.
-
-    Parameters
-    ----------
-    sail : MembraneScene
-    omega : float
-        Spin rate [rad/s].
-    held : sequence of int
-        Ids of nodes in the mesh, as the guide nodes.
+    At the release v = omega x r everywhere, `omega` in [rad/s]. The leapfrog's velocities lie half
+    a step before, and follow from the accelerations of the nodes once they are free: v - a dt / 2.
     """
     sail.field.dead = True
     sail.newton.damping = 0

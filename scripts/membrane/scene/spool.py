@@ -14,19 +14,9 @@ VERLET_DISTANCE = 2e-3  # of the collider [m]
 
 
 def turning(facets: Sequence[int], touching: Sequence[int], omega: float) -> Any:
-    """Engine that turns the spool.
+    """SpoolRotation that turns the spool at `omega` about +z [rad/s]; dead if there are no facets.
 
-    Parameters
-    ----------
-    facets, touching : sequences of int
-        Ids of the spool's facets and of the bodies that may touch it.
-    omega : float
-        About +z [rad/s].
-
-    Returns
-    -------
-    SpoolRotation
-        Dead if there are no facets.
+    `facets` and `touching` are ids of the spool's facets and of the bodies that may touch it.
     """
     bodies = Omega().bodies
     corners = [bodies[i].state.pos + v for i in facets for v in bodies[i].shape.vertices]
@@ -49,25 +39,18 @@ def add_spool(
     young: float = 1e6,
     friction_angle: float = 0.3,
 ) -> list[int]:
-    """Add the spool to the scene.
+    """Add the spool to the scene; returns the ids of its facets.
 
     Parameters
     ----------
-    radius : float
-        Of the cylinder through the facets' corners [m], > 0.
-    height : float
-        From -height/2 to height/2 [m], > 0.
+    radius, height : float
+        Of the cylinder through the facets' corners, from -height/2 to height/2 [m], > 0.
     facets : int
         Flat faces around the axis, >= 3; each is two triangles.
     young : float
         Of the contact with tether masses [Pa], > 0. Half as stiff as 2 young times their radius.
     friction_angle : float
         Between tethers and spool [rad], >= 0.
-
-    Returns
-    -------
-    list of int
-        Ids of the facets.
 
     Raises
     ------

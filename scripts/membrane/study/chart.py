@@ -174,16 +174,10 @@ def table(points: list[Point]) -> str:
 
 
 def measure(quick: bool, rounds: int, steps: int, tell: Tell) -> list[Point]:
-    """All Points of the grid.
+    """All Points of the grid, or of a small one if `quick`.
 
-    Parameters
-    ----------
-    quick : bool
-        A small grid.
-    rounds, steps : int
-        Of the timing, and steps of each at refine = 1.
-    tell : callable
-        Takes a line of text about what comes next.
+    `rounds` and `steps` are of the timing, the steps those at refine = 1; `tell` takes a line of
+    text about what comes next.
     """
     points = deployments(grid(quick), rounds, steps, tell) + disks(quick, tell)
     mark_pareto(points)

@@ -108,14 +108,8 @@ def verdict(name: str, change: np.ndarray, spread: np.ndarray, cost: tuple) -> s
 def measure(rounds: int, steps: int, members: int, tell: Callable[[str], None]) -> list[str]:
     """Write the table; returns a line of advice on each part.
 
-    Parameters
-    ----------
-    rounds, steps : int
-        Pairs of runs that time a part, and steps of each.
-    members : int
-        Runs that give the spread, >= 2.
-    tell : callable
-        Takes a line of text about what comes next.
+    A part is timed by `rounds` pairs of runs of `steps` each; `members` runs give the spread, >= 2;
+    `tell` takes a line of text about what comes next.
     """
     tell("the complete model")
     rest, complete = COMPLETE.start(), answer(COMPLETE)

@@ -49,22 +49,9 @@ TIP_RADIUS = 0.014  # as drawn, over half the view's diagonal; a tip mass has no
 
 
 def animate(folder: Path | str) -> list[Path]:
-    """Render `folder`/sail.mp4 and sail.gif from `folder`/shapes and summary.json.
+    """Render `folder`/sail.mp4 and sail.gif of a run's output folder; returns the films.
 
-    Parameters
-    ----------
-    folder : path
-        Output folder of a run.
-
-    Returns
-    -------
-    list of Path
-        The films.
-
-    Raises
-    ------
-    RuntimeError
-        If Xvfb or ffmpeg are missing or fail.
+    From its shapes and summary.json. RuntimeError if Xvfb or ffmpeg are missing or fail.
     """
     folder = Path(folder)
     for program, package in {"Xvfb": "xvfb", "ffmpeg": "ffmpeg"}.items():

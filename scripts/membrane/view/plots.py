@@ -37,15 +37,9 @@ def save(figure: Figure, path: Path | str, **options: Any) -> None:
 def plot_history(
     history: Mapping[str, np.ndarray], plots: Sequence[Plot], path: Path | str
 ) -> None:
-    """Plots of a history over time, one above the other.
+    """Plots of a history, columns (S,) with `time` [s] among them, one above the other.
 
-    Parameters
-    ----------
-    history : mapping of (S,) float
-        With a column `time` [s].
-    plots : sequence of measures.Plot
-    path : path
-        Picture to write; its ending gives the format.
+    The ending of `path` gives the format of the picture.
     """
     height = max(1 + 1.7 * len(plots), 6)
     figure = Figure(figsize=(7, height), layout="constrained")
@@ -78,18 +72,9 @@ def _draw_lines(axes, history, plot):
 def plot_shapes(
     frames: ArrayLike, mesh: SailMesh, path: Path | str, times: Sequence[float] | np.ndarray
 ) -> None:
-    """Views of the sail at up to six times, all from the same camera and at the same scale.
+    """Views of a SailMesh at up to six times, all from the same camera and at the same scale.
 
-    Parameters
-    ----------
-    frames : (S, N, 3) float
-        Positions [m], 1 <= S <= 6.
-    mesh : SailMesh
-        The sail.
-    path : path
-        Picture to write.
-    times : (S,) float
-        Times [s].
+    `frames` (S, N, 3) are positions [m] at `times` (S,) [s], 1 <= S <= 6.
     """
     _plot_views(frames, times, path, lambda axes, x, radius: draw_sail(axes, mesh, x, radius))
 
@@ -103,18 +88,8 @@ def plot_sheets(
 ) -> None:
     """Views of any sheet at up to six times, all from the same camera and at the same scale.
 
-    Parameters
-    ----------
-    frames : (S, N, 3) float
-        Positions [m], 1 <= S <= 6.
-    triangles : (T, 3) int
-        Node ids.
-    marked : (n,) int
-        Nodes drawn as dots, as those with tip masses.
-    path : path
-        Picture to write.
-    times : (S,) float
-        Times [s].
+    `frames` (S, N, 3) are positions [m] at `times` (S,) [s], 1 <= S <= 6, `triangles` (T, 3) node
+    ids; nodes `marked` (n,) are drawn as dots, as those with tip masses.
     """
 
     def draw(axes: Axes, positions: np.ndarray, radius: float) -> None:

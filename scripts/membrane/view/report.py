@@ -45,24 +45,10 @@ class NoViewer(RuntimeError):
 
 
 def write_report(folder: Path | str) -> Path:
-    """Write `folder`/report.html from the other results in this folder.
+    """Write `folder`/report.html from the other results of a finished run, and return its Path.
 
-    Parameters
-    ----------
-    folder : path
-        Of a finished run, with summary.json, history.csv and shapes/.
-
-    Returns
-    -------
-    Path
-        The page.
-
-    Raises
-    ------
-    NoViewer
-        If the viewer has not been built.
-    OSError
-        If a result is missing.
+    They are summary.json, history.csv and shapes/; OSError if one is missing. NoViewer if the
+    viewer has not been built.
     """
     folder = Path(folder)
     if not TEMPLATE.is_file():
@@ -122,13 +108,8 @@ def _frame(path, nodes, triangles, wanted):
 def thinned(shapes: list, per_shape: int, largest: float = LARGEST) -> list:
     """Every n-th of the `shapes`, the last one included, so that the page does not grow too large.
 
-    Parameters
-    ----------
-    shapes : list
-    per_shape : int
-        Bytes of each.
-    largest : float
-        Of all together [bytes]; exceeded by large meshes, of which two shapes are kept.
+    Each takes `per_shape` bytes; all together `largest`, which is exceeded by large meshes, of
+    which two shapes are kept.
     """
     keep = max(2, int(largest / per_shape))
     return shapes[:: -max(1, -(-len(shapes) // keep))][::-1]

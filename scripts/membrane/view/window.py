@@ -70,14 +70,9 @@ def show(
 
 
 class Window:
-    """YADE's 3D view.
+    """YADE's 3D view: `view` is YADE's handle of it, a GLViewer.
 
-    Attributes
-    ----------
-    view : GLViewer
-        YADE's handle of it.
-    drawer : GlExtra_Membrane
-        Its attributes may be changed at any time.
+    Attributes of `drawer`, a GlExtra_Membrane, may be changed at any time.
     """
 
     def __init__(self, view: Any, drawer: Any) -> None:
@@ -118,12 +113,7 @@ class Window:
     def snapshot(self, path: Path | str) -> Path:
         """Write a picture of the present state, .png or as `path` ends; returns the Path.
 
-        Raises
-        ------
-        OSError
-            If it cannot be written.
-        RuntimeError
-            If the window does not draw.
+        OSError if it cannot be written; RuntimeError if the window does not draw.
         """
         from PyQt5.QtWidgets import QApplication, QOpenGLWidget
 

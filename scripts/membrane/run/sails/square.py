@@ -10,7 +10,6 @@ from ...measures import SQUARE, SQUARE_OUTCOMES, in_plots
 from ...mesh import mesh_of
 from ...mesh.fold import fold, fold_report
 from ...parameters import PHYSICAL, SailParameters
-from ...scene.physical import physical_parameters
 from ...view import plots
 from ..kind import FinishedSail, Kind, Sail
 
@@ -53,6 +52,8 @@ class Square(Kind[P]):
             given = {number for name, number in PHYSICAL.items() if getattr(p, name) > 0}
             numbers = {k: f * getattr(p, k) for k, f in scaled.items() if k not in given}
             return replace(p, **numbers)
+        from ...scene.physical import physical_parameters  # needs YADE
+
         lengths = physical_parameters(mesh_of(replace(p, refine=1)), p)
         return replace(p, **lengths, **dict.fromkeys(PHYSICAL.values(), 0.0))
 

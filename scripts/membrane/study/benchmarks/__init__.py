@@ -18,24 +18,12 @@ AT_MOST, AT_LEAST = "at most", "at least"
 
 @dataclass(frozen=True)
 class Settings:
-    """What is measured how thoroughly.
+    """What is measured how thoroughly."""
 
-    Attributes
-    ----------
-    rounds : int
-        Of each comparison.
-    quick : bool
-        Only small sizes and short turns.
-    quiet : Quiet
-        Through which all is measured.
-    tell : callable
-        Takes a line about progress.
-    """
-
-    rounds: int
-    quick: bool
-    quiet: Quiet
-    tell: Callable[[str], None]
+    rounds: int  #: of each comparison
+    quick: bool  #: only small sizes and short turns
+    quiet: Quiet  #: through which all is measured
+    tell: Callable[[str], None]  #: takes a line about progress
 
     def work(self, node_steps: float) -> float:
         """Nodes times steps of a turn."""
@@ -48,39 +36,18 @@ class Settings:
 
 @dataclass(frozen=True)
 class Entry:
-    """A number that was measured.
+    """A number that was measured."""
 
-    Attributes
-    ----------
-    name : str
-        What it is; with `nodes` and `threads` unique in its module.
-    value : float
-        The median over the rounds.
-    unit : str
-    nodes : int or None
-    threads : int
-    spread : (2,) float or None
-        The least and the largest over the rounds.
-    best : float or None
-        Of a ratio: that of the shortest times, which other work on the machine touches least.
-    target : float or None
-        What it should be at most, or at least.
-    bound : str or None
-        AT_MOST or AT_LEAST; None: no target.
-    other_work : float or None
-        Cores that were busy with something else meanwhile, mean.
-    """
-
-    name: str
-    value: float
+    name: str  #: what it is; with `nodes` and `threads` unique in its module
+    value: float  #: the median over the rounds
     unit: str
     nodes: int | None
     threads: int = 1
-    spread: tuple | None = None
-    best: float | None = None
-    target: float | None = None
-    bound: str | None = None
-    other_work: float | None = None
+    spread: tuple | None = None  #: the least and the largest over the rounds, (2,)
+    best: float | None = None  #: ratio of the shortest times, least touched by other work
+    target: float | None = None  #: what it should be at most, or at least
+    bound: str | None = None  #: AT_MOST or AT_LEAST; None: no target
+    other_work: float | None = None  #: cores busy with something else meanwhile, mean
 
     def __post_init__(self) -> None:
         if (self.target is None) != (self.bound is None):

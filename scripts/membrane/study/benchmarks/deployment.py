@@ -17,14 +17,10 @@ STAGES = {"build": "fold and build", "spin_up": "spin-up", "run": "run of 1 s"}
 
 
 def deploy(path: str) -> tuple[dict, float, float]:
-    """Deploy the sail at the defaults.
+    """Deploy the sail at the defaults, on a path.
 
-    Returns
-    -------
-    dict
-        What is in summary.json and wall_time.json.
-    wall, used : float
-        Wall time and processor time [s] of the whole command.
+    Gives what is in summary.json and wall_time.json, and wall time and processor time [s] of the
+    whole command.
     """
     start, used = time.monotonic(), processor_time()
     with tempfile.TemporaryDirectory() as folder:

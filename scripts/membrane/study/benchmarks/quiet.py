@@ -60,15 +60,8 @@ class OtherWork:
 class Quiet:
     """Waits for a quiet machine before a measurement, and repeats one that was disturbed.
 
-    Parameters
-    ----------
-    tell : callable, optional
-        Takes a line when patience is at its end.
-
-    Attributes
-    ----------
-    patience : float
-        Time [s] that may still be lost by that; afterwards every measurement counts.
+    `patience` is the time [s] that may still be lost by that; afterwards every measurement counts,
+    and `tell` takes a line when it is at its end.
     """
 
     def __init__(self, tell: Callable[[str], None] | None = None) -> None:

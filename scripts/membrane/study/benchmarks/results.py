@@ -75,16 +75,8 @@ def as_rows(module: str, entries: Iterable[Entry], made_of: str) -> list[dict]:
 def save(path: Path, module: str, rows: list[dict], made_with: dict, order: Sequence[str]) -> None:
     """Put what one module found into the file, beside what the others did, in their `order`.
 
-    Parameters
-    ----------
-    path : Path
-    module : str
-    rows : list of dict
-        From `as_rows`.
-    made_with : dict
-        Versions, machine and date.
-    order : list of str
-        All modules; what others left in the file is dropped.
+    `rows` are those of `as_rows`, `made_with` has versions, machine and date, `order` all modules:
+    what others left in the file is dropped.
     """
     keys = [(row["name"], row["nodes"], row["threads"]) for row in rows]
     if len(set(keys)) < len(keys):

@@ -72,24 +72,13 @@ ARITHMETIC = re.compile(r"v?(add|sub|mul|div|sqrt|fn?m(?:add|sub)\d+)([ps])d")
 
 @dataclass(frozen=True)
 class Level:
-    """A level of the memory.
-
-    Attributes
-    ----------
-    name : str
-    size, line : int
-        Of the cache and of its lines [bytes]; of memory 0.
-    ways : int
-        Lines among which a place in memory may choose.
-    probe : int
-        Size of the arrays that measure its bandwidth [bytes].
-    """
+    """A level of the memory."""
 
     name: str
-    size: int
-    line: int
-    ways: int
-    probe: int
+    size: int  #: of the cache [bytes]; of memory 0
+    line: int  #: of its lines [bytes]; of memory 0
+    ways: int  #: lines among which a place in memory may choose
+    probe: int  #: size of the arrays that measure its bandwidth [bytes]
 
 
 def levels(folder: Path = Path("/sys/devices/system/cpu/cpu0/cache")) -> list[Level]:
@@ -166,20 +155,10 @@ def sheet(side: int, everything: bool, warm: int, steps: int) -> list:
 
 
 def executed(lines: Iterable[str]) -> tuple[dict[str, int], Counts]:
-    """Instructions that a callgrind file tells of.
+    """Instructions that a callgrind file tells of, written with --dump-instr=yes, uncompressed.
 
-    Parameters
-    ----------
-    lines : iterable of str
-        Of a file written with --dump-instr=yes and without compression.
-
-    Returns
-    -------
-    totals : dict
-        Of each event.
-    counts : dict
-        For each pair of object file and function a Counter of the runs of the instruction at
-        each address.
+    Gives the totals of each event, and for each pair of object file and function a Counter of the
+    runs of the instruction at each address.
     """
     events: list[str] = []
     totals: list[int] = []
@@ -232,11 +211,8 @@ def operations_of(path: Path | str, counts: Counts) -> dict[str, int]:
 def simulate(side: int, everything: bool, known: Sequence[Level]) -> dict:
     """Instructions, misses and operations of a step.
 
-    Returns
-    -------
-    dict
-        "instructions"; "flops" by the name of a function; "misses" by the name of a cache;
-        "sheet": what the program said.
+    They are "instructions"; "flops" by the name of a function; "misses" by the name of a cache;
+    "sheet": what the program said.
     """
     first, *outer = known[:-1]
     misses = {}
@@ -346,14 +322,8 @@ def bandwidth_name(level: Level) -> str:
 class Point:
     """A case at one size under its roof.
 
-    Parameters
-    ----------
-    everything : bool
-    told : list of dict
-        What the program said of the sheet, round by round.
-    limits : list of dict
-        What it said of the machine, parallel to `told`.
-    known : list of Level
+    `told` is what the program said of the sheet, round by round, and `limits` parallel to it what
+    it said of the machine, whose levels are `known`.
     """
 
     def __init__(
@@ -410,16 +380,9 @@ def simulated_entries(point: Point, simulated: dict) -> list[Entry]:
 
 
 def plot(found: list[Entry], points: list[Point], known: Sequence[Level], path: Path | str) -> None:
-    """Roofs of the machine, and where the cases lie under them.
+    """Roofs of the machine, and where the cases lie under them, as a picture at `path`.
 
-    Parameters
-    ----------
-    found : list of Entry
-        With those of the limits.
-    points : list of Point
-    known : list of Level
-    path : path
-        Picture to write.
+    Those of the limits must be among the entries `found`.
     """
     value = {one.name: one.value for one in found if one.nodes is None}
     peak, fused = (value[name] for name in value if name.startswith("peak"))

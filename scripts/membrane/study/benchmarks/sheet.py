@@ -15,22 +15,13 @@ SIDES = (32, 100, 316, 1000)  # nodes along an edge: 1,024 to a million in all
 
 @dataclass(frozen=True)
 class Sheet:
-    """A sheet of N nodes.
+    """A sheet of N nodes."""
 
-    Attributes
-    ----------
-    nodes, places : (N, 3) float
-        Rest positions and where the nodes are [m].
-    triangles : (T, 3) int
-    creases : (C, 2) int
-    crease_signs : (C,) int
-    """
-
-    nodes: np.ndarray
-    places: np.ndarray
-    triangles: np.ndarray
-    creases: np.ndarray
-    crease_signs: np.ndarray
+    nodes: np.ndarray  #: (N, 3), rest positions [m]
+    places: np.ndarray  #: (N, 3), where the nodes are [m]
+    triangles: np.ndarray  #: (T, 3) nodes
+    creases: np.ndarray  #: (C, 2) nodes
+    crease_signs: np.ndarray  #: (C,)
 
     def sides(self) -> np.ndarray:
         """Node ids (E, 2) of all sides, the smaller first, in lexical order."""

@@ -17,19 +17,9 @@ def take_turns(
 ) -> dict[Any, list]:
     """Measure everything `rounds` times, turn by turn, every other round in reverse.
 
-    Parameters
-    ----------
-    takers : dict
-        Functions without arguments that return a number, by name.
-    rounds : int
-    quiet : Quiet
-    wait : bool
-        For a machine that does nothing else: where wall time counts.
-
-    Returns
-    -------
-    dict
-        A list of `rounds` numbers for each name; of FEWER if `wait` was in vain.
+    `takers` are functions without arguments that return a number, by name; `wait` for a machine
+    that does nothing else: where wall time counts. Gives a list of `rounds` numbers for each name;
+    of FEWER if the wait was in vain.
     """
     found: dict[Any, list] = {name: [] for name in takers}
 

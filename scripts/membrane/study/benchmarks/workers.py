@@ -17,15 +17,7 @@ MARK = "worker: "  # begins the lines that are answers; YADE prints others
 
 
 class Worker:
-    """A process of YADE with one of situations.ALL in its scene.
-
-    Parameters
-    ----------
-    situation : str
-    threads : int
-    **options
-        Of the situation.
-    """
+    """A process of YADE with one of situations.ALL, with its `options`, in its scene."""
 
     def __init__(self, situation: str, threads: int = 1, **options: Any) -> None:
         self.name = f"{situation} {options} on {threads} threads"
@@ -68,18 +60,7 @@ class Worker:
 
 @contextmanager
 def workers(plans: dict[Any, dict]) -> Iterator[dict[Any, Worker]]:
-    """Start workers, and end them.
-
-    Parameters
-    ----------
-    plans : dict
-        Arguments of Worker as dicts, by name.
-
-    Yields
-    ------
-    dict
-        Worker by name.
-    """
+    """Start workers, from their arguments (dicts) by name, and end them; gives them by name."""
     with ExitStack() as stack:
         started = {}
         for name, plan in plans.items():

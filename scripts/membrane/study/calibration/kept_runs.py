@@ -14,14 +14,9 @@ from membrane.files import named, replace_text
 class KeptRuns:
     """Curves by point, kept in a file: a line about all of them, then a line for each.
 
-    The first run that is added makes the file, in the place of one of something else. A line that
-    a kill has cut off is left out.
-
-    Parameters
-    ----------
-    path : path
-    about : dict
-        Of what JSON can hold: all that the curves depend on beside the point.
+    The first run that is added makes the file, in the place of one of something else. A line that a
+    kill has cut off is left out. `about` holds, as JSON can, all that the curves depend on beside
+    the point.
     """
 
     def __init__(self, path: str | Path, about: Any) -> None:

@@ -26,23 +26,11 @@ def draw(
     names: Any,
     runs: Any,
 ) -> None:
-    """Draw it.
+    """Draw it, as a picture at `path`.
 
-    Parameters
-    ----------
-    path : path
-        Picture to write.
-    kind : class
-        Of the parameters.
-    target : Target
-    fit : (C, S) float
-        Curves of the run with the parameters found.
-    surface : Surface
-    found : Estimate
-    names : sequence of str
-        The d parameters.
-    runs : (n, d) float
-        Logarithms of the parameters of all runs.
+    `kind` is the class of the parameters, `fit` (C, S) has the curves of the run with the
+    parameters found, an Estimate, of d `names`; `runs` (n, d) are logarithms of the parameters of
+    all runs. `target` is a Target, `surface` a Surface.
     """
     curves = len(target.columns)
     width = 4.2 * (curves + (len(names) == 2))

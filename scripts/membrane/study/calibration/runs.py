@@ -22,20 +22,11 @@ INTERVAL = 1e-3  # [s] between rows of a run's history
 
 
 class Deployments:
-    """Runs scripts/deploy.py for points in parameter space; no point twice.
+    """Runs scripts/deploy.py, at a Path, for points in parameter space; no point twice.
 
-    Parameters
-    ----------
-    deploy : Path
-        Of scripts/deploy.py.
-    names : sequence of str
-        The d parameters that vary.
-    target : Target
-        Gives columns and times.
-    options : sequence of str
-        Further options of scripts/deploy.py, the same for all runs.
-    tell : callable
-        Called with (values of the parameters (d,), curves or None) after each run.
+    The d parameters of `names` vary; the Target gives columns and times; further `options` are the
+    same for all runs. `tell` is called with values of the parameters (d,) and curves or None after
+    each run.
     """
 
     def __init__(

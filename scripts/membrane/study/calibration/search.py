@@ -39,16 +39,8 @@ def emulated_best(
 ) -> np.ndarray:
     """Point (d,) between `low` and `high` where a spline through the runs is nearest to the target.
 
-    Parameters
-    ----------
-    points : (n, d) float
-        Logarithms of the parameters of the runs.
-    curves : (n, C, S) float
-    target : Target
-    low, high : (d,) float
-        Bounds, logarithms.
-    seed : int
-        Of the search.
+    `points` (n, d) are logarithms of the parameters of the runs, as the bounds (d,), `curves` are
+    (n, C, S); `seed` is of the search.
     """
     span = np.ptp(target.values, axis=1)[:, None]
     scaled = (points - low) / (high - low)
@@ -66,22 +58,10 @@ def emulated_best(
 def search(
     simulate: Any, target: Any, low: np.ndarray, high: np.ndarray, seed: int = 0
 ) -> np.ndarray:
-    """Point (d,) of the least misfit, roughly.
+    """Point (d,) of the least misfit, roughly, between bounds `low` and `high` (d,), logarithms.
 
-    Parameters
-    ----------
-    simulate : Deployments
-        Or another callable with its attributes `points` and `curves`.
-    target : Target
-    low, high : (d,) float
-        Bounds, logarithms.
-    seed : int
-        Of the points that are tried.
-
-    Raises
-    ------
-    RuntimeError
-        If too many runs diverge.
+    `simulate` is a Deployments or another callable with its attributes `points` and `curves`;
+    `seed` is of the points that are tried. RuntimeError if too many runs diverge.
     """
     simulate(qmc.scale(qmc.Sobol(len(low), seed=seed).random(FIRST), low, high))
     if len(simulate.points) < FIRST // 2:

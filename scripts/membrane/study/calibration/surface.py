@@ -47,21 +47,9 @@ class Region:
 class Surface:
     """Least squares of runs by a polynomial of second degree in the logarithms.
 
-    Parameters
-    ----------
-    region : Region
-    points : (n, d) float
-        Logarithms of the parameters, inside the region.
-    curves : (n, C, S) float
-
-    Attributes
-    ----------
-    residuals : (n, C, S) float
-        Of the runs.
-    freedom : int
-        Runs less coefficients.
-    scatter : (C, S) float
-        Standard deviation of a run about the surface.
+    `points` (n, d) are logarithms of the parameters, inside the Region, and `curves` (n, C, S).
+    Then `residuals` (n, C, S) are those of the runs, `freedom` is runs less coefficients, and
+    `scatter` (C, S) the standard deviation of a run about the surface.
     """
 
     def __init__(self, region: Any, points: np.ndarray, curves: Any) -> None:
@@ -113,20 +101,14 @@ class Surface:
 class Estimate:
     """What a target tells.
 
-    Attributes
-    ----------
-    point : (d,) float
-        Logarithms of the parameters.
-    covariance : (d, d) float
-        Of the logarithms: scatter of runs, noise of the target, and lack of fit.
-    lack_of_fit : float
-        Mean square of target - surface over what scatter and noise explain [-]; about 1 or less if
-        the model can follow the target. The covariance is enlarged by it where it exceeds 1.
+    The covariance (d, d) is of scatter of runs, noise of the target, and lack of fit, the mean
+    square of target - surface over what scatter and noise explain: about 1 or less if the model can
+    follow the target. The covariance is enlarged by it where it exceeds 1.
     """
 
-    point: np.ndarray
-    covariance: np.ndarray
-    lack_of_fit: float
+    point: np.ndarray  #: (d,), logarithms of the parameters
+    covariance: np.ndarray  #: (d, d), of the logarithms
+    lack_of_fit: float  #: [-]
 
     @property
     def sigma(self) -> np.ndarray:
@@ -149,15 +131,6 @@ def estimate(surface: Any, target: Any) -> Estimate:
     n / (n - 2) for having been found with n degrees of freedom, the variance of Student's t. The
     noise of the target is white. Both are enlarged by the lack of fit as the Particle Data Group
     does (Review of Particle Physics, section 5.2.2).
-
-    Parameters
-    ----------
-    surface : Surface
-    target : Target
-
-    Returns
-    -------
-    Estimate
     """
     noise = np.broadcast_to(target.noise[:, None], target.values.shape)
     scatter = np.sqrt(np.mean(surface.scatter**2, axis=1, keepdims=True))
@@ -211,25 +184,11 @@ def _inverse(squares, scatter):
 def refine(
     simulate: Any, target: Any, point: Any, low: np.ndarray, high: np.ndarray, seed: int = 0
 ) -> tuple[Surface, Estimate]:
-    """Estimate from surfaces about `point`, moved until the estimate lies inside.
+    """The last Surface about `point`, moved until the estimate lies inside, and its Estimate.
 
-    Parameters
-    ----------
-    simulate : Deployments
-        Or another callable with its attributes `points` and `curves`.
-    target : Target
-    point : (d,) float
-        Where to begin, logarithms.
-    low, high : (d,) float
-        Bounds, logarithms.
-    seed : int
-        Of the added runs.
-
-    Returns
-    -------
-    surface : Surface
-        The last one.
-    found : Estimate
+    `simulate` is a Deployments or another callable with its attributes `points` and `curves`.
+    `point` (d,) is where to begin, between bounds `low` and `high` (d,), all logarithms; `seed` is
+    of the added runs.
     """
     for turn in range(ROUNDS):
         region = Region.about(point, low, high)

@@ -17,18 +17,9 @@ def read_table(path: str | Path, wanted: Any) -> dict[str, np.ndarray]:
 
     Commas, semicolons, tabs or blanks part the columns, as the header tells; blanks beside them,
     empty lines and a mark `#` before the header do not count. Where no comma parts them, numbers
-    may have decimal commas.
-
-    Parameters
-    ----------
-    path : path
-    wanted : collection of str
-        Names of the columns to read, where there are such; others may hold anything.
-
-    Raises
-    ------
-    BadFile
-        If it is no table, or these columns hold something else than finite numbers.
+    may have decimal commas. Columns of names that are `wanted` are read, where there are such;
+    others may hold anything. BadFile if it is no table, or these hold something else than finite
+    numbers.
     """
     text = read_text(path).replace("\r\n", "\n").replace("\r", "\n").split("\n")
     lines = [(number, line) for number, line in enumerate(text, start=1) if line.strip(" \t,;")]

@@ -17,24 +17,12 @@ MEANT = {"rad": "degrees", "-": "percent"}  # by the unit that a curve should ha
 
 @dataclass(frozen=True)
 class Target:
-    """Curves that a run shall follow.
+    """Curves that a run shall follow."""
 
-    Attributes
-    ----------
-    times : (S,) float
-        Since the release [s], growing.
-    columns : tuple of str
-        Names of the C curves, of `columns_of`.
-    values : (C, S) float
-        In the units of the measures.
-    noise : (C,) float
-        Standard deviation of what changes from one time to the next without reason.
-    """
-
-    times: np.ndarray
-    columns: tuple
-    values: np.ndarray
-    noise: np.ndarray
+    times: np.ndarray  #: (S,), since the release [s], growing
+    columns: tuple  #: names of the C curves, of `columns_of`
+    values: np.ndarray  #: (C, S), in the units of the measures
+    noise: np.ndarray  #: (C,), standard deviation from one time to the next without reason
 
 
 def noise_of(values: np.ndarray) -> np.ndarray:
@@ -47,22 +35,10 @@ def read_target(
 ) -> Target:
     """Target from a table with a header, as history.csv; other columns may hold anything.
 
-    Parameters
-    ----------
-    path : path
-        Table with the column `time` [s] and one or more curves.
-    columns : sequence of str
-        Those to use; default: those of `usual_columns` that the table has.
-    until : float
-        Later times are left out [s].
-    sail : str
-        Kind of sail whose measures the curves are.
-
-    Raises
-    ------
-    BadFile
-        If it is no table, a column is missing, a number is not finite, a curve is flat or seems to
-        be in another unit, or times do not grow or are too few.
+    It has the column `time` [s] and one or more curves, the measures of a kind of sail: `columns`
+    names those to use, by default those of `usual_columns` that the table has. Times later than
+    `until` [s] are left out. BadFile if it is no table, a column is missing, a number is not
+    finite, a curve is flat or seems to be in another unit, or times do not grow or are too few.
     """
     usual, known = usual_columns(sail), columns_of(sail)
     found = read_table(path, ("time", *(columns or usual)))

@@ -56,19 +56,9 @@ def grid(
 ) -> dict[str, RunParameters]:
     """The cases, by name, of a grid; without one, for the paper's sail, those of its Table 2.
 
-    Parameters
-    ----------
-    kind : class
-        Of the parameters.
-    given : dict of list
-        Values of parameters by name: several are an axis of the grid.
-    base : dict, optional
-        Values of those that are not given.
-
-    Raises
-    ------
-    ValueError
-        If a value is out of range or given twice, or there is no grid.
+    `given` has lists of values of parameters of a class `kind` by name: several are an axis of the
+    grid; `base` has values of those that are not given. ValueError if a value is out of range or
+    given twice, or there is no grid.
     """
     check_values(kind, given)
     base = base or {}
@@ -105,10 +95,7 @@ def case_words(p: RunParameters) -> list[str]:
 def plan(folder: Path, cases: dict[str, RunParameters]) -> None:
     """Note in `folder` which cases the sweep consists of. From then on all RESULTS in it are ours.
 
-    Raises
-    ------
-    ValueError
-        If one is there already with other parameters, finished or not.
+    ValueError if one is there already with other parameters, finished or not.
     """
     (folder / CASES).mkdir(parents=True, exist_ok=True)
     about = {name: identity(p) for name, p in cases.items()}
@@ -133,9 +120,7 @@ def refuse_other_results(folder: Path) -> None:
 def planned_cases(folder: Path) -> dict[str, dict]:
     """What the cases are about that a sweep consists of, by name; {} if nobody planned any.
 
-    Raises
-    ------
-    BadFile
+    BadFile if the file is damaged.
     """
     path = folder / PLAN
     if not path.exists():

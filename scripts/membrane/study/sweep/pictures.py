@@ -48,19 +48,8 @@ def short(value: float | str) -> str:
 def draw_curves(axes: Any, curves: dict, lasts: Sequence = (), about: Axes = TABLE_2) -> dict:
     """Draw curves of cases: the colour tells the last parameter, the kind of line the others.
 
-    Parameters
-    ----------
-    axes : matplotlib Axes
-    curves : dict
-        (times (S,), values (S,)) by place.
-    lasts : sequence, optional
-        All values of the last parameter that get a colour of their own, in turn; default: those
-        of `curves`.
-    about : Axes
-
-    Returns
-    -------
-    dict of matplotlib lines by place
+    `curves` are (times (S,), values (S,)) by place. `lasts` are all values of the last parameter
+    that get a colour of their own, in turn; by default those of `curves`. Gives lines by place.
     """
     others = sorted({place[:-1] for place in curves})
     lasts = lasts or sorted({place[-1] for place in curves})
@@ -84,16 +73,8 @@ def plot_curves(
 ) -> None:
     """Curves of all cases over time: in one panel, or in up to MANY if they are many.
 
-    Parameters
-    ----------
-    curves : dict
-        (times (S,), values (S,)) by place.
-    ends : collection of places
-        Cases that diverged: where they ended is marked.
-    label : str
-        Of the values, with unit.
-    path : path
-    about : Axes
+    `curves` are (times (S,), values (S,)) by place; `ends` are places of the cases that diverged:
+    where they ended is marked; `label` is of the values, with unit.
     """
     others = sorted({place[:-1] for place in curves})
     together = len(others) == 1 or len(curves) <= MANY and len(others) <= len(STYLES)
@@ -158,14 +139,8 @@ def some(values: Sequence) -> Sequence:
 def plot_maps(maps: dict, words: dict, path: str | Path, about: Axes = TABLE_2) -> None:
     """Heat maps over two parameters, side by side; with numbers where these are not too many.
 
-    Parameters
-    ----------
-    maps : dict
-        By title: a dict of values by place, None where there is none.
-    words : dict of str
-        By place: what to write where there is no value.
-    path : path
-    about : Axes
+    `maps` are by title dicts of values by place, None where there is none; `words` tell by place
+    what to write there.
     """
     firsts, seconds = (sorted(set(values)) for values in zip(*words))
     width = max(4.2, 1.1 * min(MANY, len(firsts)) + 2.2)

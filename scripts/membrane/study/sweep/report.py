@@ -23,15 +23,8 @@ NOT_SEEN = "not seen"  # where a run ends before what is asked for
 def report(folder: str | Path) -> list[Status]:
     """Write the report into the folder of a sweep; returns all its cases, also those missing.
 
-    Parameters
-    ----------
-    folder : path
-        That of scripts/sweep.py, or any that has folders of scripts/case.py in it.
-
-    Raises
-    ------
-    ValueError
-        If there is no case, or the results of something else would be lost.
+    It is that of scripts/sweep.py, or any that has folders of scripts/case.py in it. ValueError if
+    there is no case, or the results of something else would be lost.
     """
     folder = Path(folder)
     refuse_other_results(folder)
