@@ -296,8 +296,7 @@ class SquareSail:
         False,
         "-",
         RUN,
-        "alpha, alpha_c, beta, zeta as they are on every mesh; else they are those of refine 1, "
-        "and a finer mesh is of the same film",
+        "the paper's numbers on every mesh, not only on refine 1",
     )
 
 

@@ -65,8 +65,9 @@ class VtkSeries:
     def write(self, time: float, positions: np.ndarray, cell_data: dict | None = None) -> None:
         """Append a frame at a `time` [s] later than that of the one before; returns its .vtu Path.
 
-        `positions` (N, 3) [m] are of the nodes; `cell_data` has values (M,) or vectors (M, 3) at the
-        cells by name, for instance `area_strain`. NotFinite, a ValueError, if one is no finite number.
+        `positions` (N, 3) [m] are of the nodes; `cell_data` has values (M,) or vectors (M, 3) at
+        the cells by name, for instance `area_strain`. NotFinite, a ValueError, if one is no
+        finite number.
         """
         if self.frames and time <= self.frames[-1][0]:
             raise ValueError(f"time = {time} s: must be > {self.frames[-1][0]} s, the last frame's")
