@@ -18,6 +18,7 @@ from membrane.run import driver
 from membrane.run.sails import SAILS
 from membrane.scene.physical import physical_parameters
 from membrane.study.sources import paper
+from membrane.study.verification import film
 from support import (
     O,
     SceneTest,
@@ -336,6 +337,16 @@ class TestCreases(SceneTest):
             self.assertAlmostEqual(abs(forces[3, 1]) * 0.02 / moment, 1, places=12)
 
 
+class TestClosedForms(SceneTest):
+    def test_wrinkled_strips_and_rings_disks_and_arms(self):
+        with quiet():
+            found = film.checks(full=False)
+        self.assertGreater(len(found), 20)
+        for check in found:
+            with self.subTest(check.name, measured=check.measured, target=check.target):
+                self.assertTrue(check.holds)
+
+
 class TestParameters(SceneTest):
     def test_what_does_not_fit_is_refused(self):
         nodes, triangles = grid(2)
@@ -379,13 +390,13 @@ class TestParameters(SceneTest):
 
     def test_a_finer_sail_is_of_the_same_film(self):
         kind, base = SAILS["square"], SailParameters()
-        self.assertIs(kind.film(base), base)
+        self.assertIs(kind.film(None, base), base)
         printed = replace(base, refine=3, as_printed=True)
-        self.assertIs(kind.film(printed), printed)
-        fine = kind.film(replace(base, refine=2))
+        self.assertIs(kind.film(None, printed), printed)
+        fine = kind.film(None, replace(base, refine=2))
         numbers = fine.alpha, fine.alpha_crease, fine.beta, fine.zeta
         self.assertEqual(numbers, (25.0, 250.0, 15.0, 0.04))
-        given = kind.film(replace(base, refine=2, crease_length=1e-3))
+        given = kind.film(None, replace(base, refine=2, crease_length=1e-3))
         self.assertEqual((given.beta, given.crease_length), (base.beta, 1e-3))
 
     def test_the_numbers_of_finer_meshes_are_those_of_the_same_lengths(self):
@@ -393,7 +404,7 @@ class TestParameters(SceneTest):
         coarse = physical_parameters(mesh_of(SailParameters()), SailParameters())
         for refine in (2, 3):
             p = SailParameters(refine=refine)
-            found = physical_parameters(mesh_of(p), kind.film(p))
+            found = physical_parameters(mesh_of(p), kind.film(None, p))
             for name in PHYSICAL:
                 # A finer mesh has more rows: their mean lengths differ a little.
                 self.assertAlmostEqual(found[name] / coarse[name], 1, delta=0.02)
@@ -402,7 +413,7 @@ class TestParameters(SceneTest):
 
     def test_a_sail_of_plane_stress_takes_the_lengths_of_the_paper_s_mesh(self):
         p = SailParameters(film="plane_stress", refine=3, damping_time=2e-6)
-        given = SAILS["square"].film(p)
+        given = SAILS["square"].film(None, p)
         base = physical_parameters(mesh_of(SailParameters()), SailParameters())
         for name in set(PHYSICAL) - {"damping_time"}:
             self.assertEqual(getattr(given, name), base[name])

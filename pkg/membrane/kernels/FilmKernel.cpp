@@ -190,15 +190,18 @@ Culprit FilmForce::culprit(const Moment& moment, bool elastic) const {
 void FilmForce::appendMemory(std::vector<double>& grown) const {
     const std::size_t first = grown.size();
     grown.resize(first + memorySize());
-    for (std::size_t e = 0; e < order_.size(); ++e)
-        for (int i = 0; i < 3 && order_.element[e] >= 0; ++i) grown[first + 3 * order_.element[e] + i] = grown_[i][e];
+    for (std::size_t e = 0; e < order_.size(); ++e) {
+        if (order_.element[e] < 0) continue;
+        double* const to = &grown[first + 3 * static_cast<std::size_t>(order_.element[e])];
+        for (int i = 0; i < 3; ++i) to[i] = grown_[i][e];
+    }
 }
 
 void FilmForce::setMemory(const double* grown) {
     for (int i = 0; i < 3; ++i) {
         grown_[i].resize(order_.size(), 0.);
         for (std::size_t e = 0; e < order_.size(); ++e)
-            if (order_.element[e] >= 0) grown_[i][e] = grown[3 * order_.element[e] + i];
+            if (order_.element[e] >= 0) grown_[i][e] = grown[3 * static_cast<std::size_t>(order_.element[e]) + i];
     }
 }
 

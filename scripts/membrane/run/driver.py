@@ -66,7 +66,7 @@ def build(p: RunParameters, sail: Sail | None = None) -> tuple[Sail, scene.Membr
     """
     kind = SAILS[p.sail]
     sail = sail or kind.sail(p)
-    mesh, p = sail.mesh, kind.film(p)
+    mesh, p = sail.mesh, kind.film(sail, p)
     try:
         membrane = scene.add_membrane(
             mesh.nodes,
@@ -282,7 +282,7 @@ class _Deployment:
         _, self.built = build(self.p, self.sail)
         critical = self.built.forces.criticalTimeStep()
         self.steps = steps_of(self.p, critical)
-        lengths = physical_parameters(self.sail.mesh, self.kind.film(self.p))
+        lengths = physical_parameters(self.sail.mesh, self.kind.film(self.sail, self.p))
         about = {"film": lengths, "critical_time_step": critical, "dt": self.steps.dt}
         self.facts = {**self.sail.facts, **about}
         for doubt in self.sail.doubts:

@@ -2,14 +2,14 @@
 """What a kind of sail gives to the driver, which does everything else. Needs no YADE."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
 from ..measures import Measure, Outcome
-from ..parameters import RunParameters
+from ..parameters import PHYSICAL, RunParameters
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,6 +100,13 @@ class FinishedSail:
 P = TypeVar("P", bound=RunParameters)
 
 
+def in_si(mesh: Any, p: P) -> P:
+    """Parameters with what the paper's numbers are on a mesh in SI, in their place."""
+    from ..scene.physical import physical_parameters  # needs YADE
+
+    return replace(p, **physical_parameters(mesh, p), **dict.fromkeys(PHYSICAL.values(), 0.0))
+
+
 class Kind(Generic[P]):
     """A kind of sail; its parameters name it: `RunParameters.sail`.
 
@@ -127,9 +134,13 @@ class Kind(Generic[P]):
         """The sail of parameters `p`; ValueError, in one sentence, if there is none."""
         raise NotImplementedError
 
-    def film(self, p: P) -> P:
-        """The parameters with which the membrane of a sail is built: by default `p`."""
-        return p
+    def film(self, sail: Sail, p: P) -> P:
+        """The parameters with which the membrane of a sail is built.
+
+        A film of plane stress takes the paper's numbers, where they are not given in SI, for
+        those of the sail's mesh.
+        """
+        return p if p.film == "springs" else in_si(sail.mesh, p)
 
     def explained(self, refusal: str) -> str:
         """What to tell where the plugin refuses the sail's membrane."""

@@ -19,7 +19,7 @@ from .verification import deployment, spinning
 from .verification.variant import Variant
 
 DURATION, INTERVAL = 0.1, 1e-3  # of the deployments [s]; single curves can be compared so long
-FINEST: dict = {"refine": 4, "dt": 1.25e-6}
+FINEST: dict = {"refine": 4, "as_printed": True, "dt": 1.25e-6}
 TURNS = 1.5  # of the disks
 Tell = Callable[[str], None]
 

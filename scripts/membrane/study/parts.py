@@ -7,6 +7,7 @@ Writes reference/parts.csv and prints advice.
 import statistics
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import pi
 
 import numpy as np
 
@@ -46,6 +47,7 @@ class Part(Variant):
     duration: float = LAG_TIME  # s
 
 
+CONSERVATIVE = "conservative"
 LIGHT = 0.1 * SailParameters().tether_density
 COMPLETE = Part()
 PARTS = {
@@ -58,6 +60,10 @@ PARTS = {
     "spool of 12 facets": Part({"spool_facets": 12}),
     "no contact with the spool": Part(contact=False),
     "no ledger": Part(ledger=False),
+    "film of plane stress": Part({"film": "plane_stress"}, rests=True),
+    "half the buckling length": Part({"buckling_length": 1.14e-3}, rests=True),
+    "natural angle of 30 degrees": Part({"theta0": pi / 6, "crease_law": CONSERVATIVE}, rests=True),
+    "twice the damping time": Part({"damping_time": 1.36e-6}),
     "half the time step": Part({"dt": 2.5e-6}, duration=SAMPLES[-1]),
     "finer mesh (refine = 2)": Part({"refine": 2, "dt": 2.5e-6}, rests=True, duration=SAMPLES[-1]),
 }

@@ -206,7 +206,7 @@ def _is_too_flat(sheet, p):
 
     film = MembraneMat(**attributes("MembraneMat", p))
     try:
-        Membrane(material=film, nodes=sheet.nodes, triangles=sheet.triangles)
+        Membrane(material=film, nodes=sheet.nodes, triangles=sheet.triangles, film=p.film)
     except ValueError as error:
         return REMESH in str(error)
     return False

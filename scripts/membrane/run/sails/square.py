@@ -11,7 +11,7 @@ from ...mesh import mesh_of
 from ...mesh.fold import fold, fold_report
 from ...parameters import PHYSICAL, SailParameters
 from ...view import plots
-from ..kind import FinishedSail, Kind, Sail
+from ..kind import FinishedSail, Kind, Sail, in_si
 
 
 P = TypeVar("P", bound=SailParameters)
@@ -42,7 +42,7 @@ class Square(Kind[P]):
             facts={"fold": asdict(fold_report(mesh, start))},
         )
 
-    def film(self, p: P) -> P:
+    def film(self, sail: Sail, p: P) -> P:
         """One film on every mesh: alpha, alpha_c, beta and zeta are those of refine 1."""
         n = p.refine
         if p.film == "springs" and (p.as_printed or n == 1):
@@ -52,10 +52,7 @@ class Square(Kind[P]):
             given = {number for name, number in PHYSICAL.items() if getattr(p, name) > 0}
             numbers = {k: f * getattr(p, k) for k, f in scaled.items() if k not in given}
             return replace(p, **numbers)
-        from ...scene.physical import physical_parameters  # needs YADE
-
-        lengths = physical_parameters(mesh_of(replace(p, refine=1)), p)
-        return replace(p, **lengths, **dict.fromkeys(PHYSICAL.values(), 0.0))
+        return in_si(mesh_of(replace(p, refine=1)), p)
 
     def draw(self, run: FinishedSail) -> None:
         """deployment.png, and shapes.png with six instants up to the fullest deployment."""

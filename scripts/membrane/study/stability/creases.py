@@ -200,7 +200,7 @@ def sail_run(
         Positions [m].
     """
     beta, zeta, refine = case
-    start = SailParameters(refine=refine)
+    start = SailParameters(refine=refine, as_printed=refine > 1)
     sail, built = begin(replace(start, beta=beta, zeta=zeta), equilibrium(start), ledger=False)
     stride, between, looks = round(LOOK / O.dt), round(row / LOOK), round(seconds / LOOK)
     rows: list[list[float]] = []

@@ -300,7 +300,7 @@ def early(refine: int, dt: float | None, seed: int = 0) -> Deployment:
 
     `seed`: of the `equilibrium` from which it is released.
     """
-    p = SailParameters(refine=refine, duration=EARLY_TIMES[-1])
+    p = SailParameters(refine=refine, duration=EARLY_TIMES[-1], as_printed=refine > 1)
     start = equilibrium(p, seed)
     if dt is None:
         _, built = begin(replace(p, dt=STEPS[-1]), start)

@@ -28,13 +28,14 @@ class Variant:
     contact: bool = True
 
     def parameters(self) -> SailParameters:
-        """Its SailParameters."""
-        return replace(SailParameters(duration=self.duration), **self.changes)
+        """Its SailParameters; those of the paper as printed on every mesh."""
+        printed = {"as_printed": self.changes.get("refine", 1) > 1}
+        return replace(SailParameters(duration=self.duration), **printed, **self.changes)
 
     def start(self) -> np.ndarray:
         """Positions (N, 3) [m] at the release; the fused path finds them for both."""
         p = self.parameters()
-        rested = p if self.rests else SailParameters(refine=p.refine)
+        rested = p if self.rests else SailParameters(refine=p.refine, as_printed=p.as_printed)
         return deployment.equilibrium(replace(rested, path="fused"))
 
     def begin(self, positions: np.ndarray | None = None) -> tuple[Sail, scene.MembraneScene]:
