@@ -44,8 +44,7 @@ In the folder of the sources also:
   parts [options]           what each part of the model changes and costs, into reference/parts.csv
   chart [options]           accuracy against time for every path, step and mesh, into
                             reference/chart.csv and chart.png
-  docs [--table]            make the HTML site build/docs, and the guide's table of parameters;
-                            --table: only that
+  docs                      make the HTML site build/docs
   viewer                    bundle the viewer of report.html, which npm's registry holds parts of
   tidy                      hold the C++ sources against clang-tidy, as .clang-tidy has it
   sanitize                  the C++ tests under address and undefined-behaviour sanitizers, and the
@@ -520,7 +519,6 @@ disk | stability | parts | chart)
     run_yade "$root/scripts/$command.py" "$@"
     ;;
 docs)
-    if [[ $* == --table ]]; then PYTHONPATH=$root/scripts exec python3 "$root/reference/guide/make_site.py" --table; fi
     take_nothing "$@"
     need "${docs_packages[@]}" "${sail_packages[@]}" "${sweep_packages[@]}" "${calibrate_packages[@]}"
     compile

@@ -7,11 +7,13 @@ import re
 import shutil
 import subprocess
 import unittest
+from dataclasses import fields
 from pathlib import Path
 
 import membrane
 import numpy as np
 from membrane.results.history import read_history
+from membrane.run.sails import SAILS
 from membrane.run.sails.sheet import PatternParameters, read_sheet
 from support import ROOT, long, of_the_view, run_yade, scratch, short_run, yade_environment
 from test_drawing import run_on_screen
@@ -170,6 +172,10 @@ class TestSite(unittest.TestCase):
             self.assertIn(f'id="membrane.{name}"', plugin)
         scene = (site / "api" / "scene.html").read_text(encoding="utf-8")
         self.assertIn('id="membrane.scene.engines.set_engines"', scene)
+        parameters = (site / "api" / "parameters.html").read_text(encoding="utf-8")
+        for kind in SAILS.values():
+            for item in fields(kind.parameters):
+                self.assertIn(f">{item.name}<", parameters)
 
 
 if __name__ == "__main__":

@@ -1,9 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Makes the HTML site build/docs, in YADE: `yade -n -x reference/guide/make_site.py`.
-
-It also writes the table of parameters into parameters.md; with --table it does only that, and needs
-neither YADE nor Sphinx.
-"""
+"""Makes the HTML site build/docs, in YADE: `yade -n -x reference/guide/make_site.py`."""
 
 import pkgutil
 import shutil
@@ -12,13 +8,11 @@ from dataclasses import fields
 from pathlib import Path
 
 import membrane
-from membrane.parameters import SailParameters
+from membrane.run.sails import SAILS
 
 HERE = Path(sys.argv[0]).resolve().parent  # YADE keeps __file__ for itself
 ROOT = HERE.parents[1]
 SITE = ROOT / "build" / "docs"
-PAGE = HERE / "parameters.md"
-BEGIN, END = "<!-- parameters -->\n", "<!-- end -->"
 ROOMS = ("ground", "mesh", "scene", "results", "view", "run", "study")
 PROGRAMS = ("membrane.study.benchmarks.worker",)  # run when they are imported
 MATHJAX = Path("/usr/share/javascript/mathjax")  # of which formulas need these files
@@ -29,23 +23,22 @@ FORMULAS = (
 GO_ON = '<meta charset="utf-8"><meta http-equiv="refresh" content="0; url=README.html">\n'
 
 
-def table():
-    """The table of all parameters of the paper's sail."""
+def table(kind):
+    """All parameters of a class of parameters, as a table of Markdown."""
     rows = [("parameter", "default", "unit", "source", "meaning"), ("---",) * 5]
-    for item in fields(SailParameters):
+    for item in fields(kind):
         about, value = item.metadata, item.default
         default = f"{value:g}" if isinstance(value, float) else str(value)
         rows.append((f"`{item.name}`", default, about["unit"], about["source"], about["text"]))
     return "".join(f"| {' | '.join(row)} |\n" for row in rows)
 
 
-def write_table():
-    """Put it into its page."""
-    before, _, rest = PAGE.read_text(encoding="utf-8").partition(BEGIN)
-    after = rest.partition(END)[2]
-    text = f"{before}{BEGIN}\n{table()}\n{END}{after}"
-    if text != PAGE.read_text(encoding="utf-8"):
-        PAGE.write_text(text, encoding="utf-8")
+def write_parameters(file):
+    """The page of the parameters of all kinds of sail."""
+    text = "# Parameters of all kinds of sail\n"
+    for name, kind in SAILS.items():
+        text += f"\n## {name}: {kind.title}\n\n{table(kind.parameters)}"
+    file.write_text(text, encoding="utf-8")
 
 
 def modules():
@@ -71,15 +64,13 @@ def write_api(folder):
             text += ["", name, "-" * len(name), "", f".. auto{kind}:: {name}"]
         (folder / f"{page}.rst").write_text("\n".join(text) + "\n", encoding="utf-8")
     names = "".join(f"   {page}\n" for page in pages)
-    index = f"Reference\n=========\n\n.. toctree::\n   :maxdepth: 2\n\n{names}"
+    write_parameters(folder / "parameters.md")
+    index = f"Reference\n=========\n\n.. toctree::\n   :maxdepth: 2\n\n   parameters\n{names}"
     (folder / "index.rst").write_text(index, encoding="utf-8")
 
 
 def main():
     """Returns the exit status."""
-    write_table()
-    if "--table" in sys.argv:
-        return 0
     from sphinx.cmd.build import build_main
 
     source = ROOT / "build" / "docs-source"
