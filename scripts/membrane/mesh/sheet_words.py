@@ -59,12 +59,14 @@ def slow_sides(
     stiffnesses: np.ndarray,
     masses: np.ndarray,
     zeta: float = 0.0,
+    time: float = 0.0,
 ) -> tuple[np.ndarray, float]:
     """The few sides without which the time step could be much longer.
 
     The step that a side allows is estimated from its ends, each moved alone: exact for a side much
     stiffer than all about it, and for a lattice of equal triangles. Of `nodes` (N, 3) [m] at rest,
-    `sides` (E, 2), `stiffnesses` (E,) [N/m], `masses` (N,) [kg] and a damping ratio `zeta` [-].
+    `sides` (E, 2), `stiffnesses` (E,) [N/m], `masses` (N,) [kg] and a damping ratio `zeta` [-]
+    or a damping `time` [s] in its place.
 
     Gives rows (n,) of `sides`, the worst first, at most FEW, or none if many sides are alike; and
     by which factor the step would be longer without these sides and their nodes.
@@ -81,7 +83,8 @@ def slow_sides(
         return np.linalg.eigvalsh(blocks / masses[:, None, None])[:, -1][sides].sum(axis=1)
 
     square = largest(stiffnesses)
-    rate = largest(2 * zeta * np.sqrt(stiffnesses * masses[sides].mean(axis=1)))
+    dampers = 2 * zeta * np.sqrt(stiffnesses * masses[sides].mean(axis=1))
+    rate = largest(time * stiffnesses if time else dampers)
     step = 2 / (rate + np.sqrt(rate**2 + square))  # at which square step^2 + 4 rate step = 4
     rows: list = []
     taken = np.zeros(len(nodes), dtype=bool)

@@ -96,7 +96,7 @@ class AnySheet(Kind[PatternParameters]):
         """Nothing is added; a side that makes the time step much shorter is told."""
         film = built.membrane
         springs = (np.array(a) for a in (film.sides, film.stiffnesses, film.masses))
-        for doubt in about_slow_sides(sail.mesh.given, *springs, p.zeta):
+        for doubt in about_slow_sides(sail.mesh.given, *springs, p.zeta, p.damping_time):
             warn(doubt)
 
     def draw(self, run: FinishedSail) -> None:
