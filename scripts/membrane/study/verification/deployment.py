@@ -295,12 +295,15 @@ def ledger_checks() -> list[Check]:
 
 
 @cache
-def early(refine: int, dt: float | None, seed: int = 0) -> Deployment:
+def early(
+    refine: int, dt: float | None, seed: int = 0, changes: tuple = (("as_printed", True),)
+) -> Deployment:
     """The run up to the last of EARLY_TIMES; `dt` None: MESH_STEP of the critical one.
 
-    `seed`: of the `equilibrium` from which it is released.
+    `seed`: of the `equilibrium` from which it is released; `changes`: items of SailParameters,
+    the paper's as printed by default.
     """
-    p = SailParameters(refine=refine, duration=EARLY_TIMES[-1], as_printed=refine > 1)
+    p = SailParameters(refine=refine, duration=EARLY_TIMES[-1], **dict(changes))
     start = equilibrium(p, seed)
     if dt is None:
         _, built = begin(replace(p, dt=STEPS[-1]), start)
