@@ -64,7 +64,7 @@ class Stage:
         return drawer.shownRange
 
 
-def sheet(creased=False, radius=1e-3, at=CORNER):
+def sheet(creased=False, radius=1e-3, at=CORNER, **options):
     """An empty scene with a sheet at rest; returns membrane, positions (N, 3) [m]."""
     O.reset()
     nodes, triangles = grid(CELLS, LENGTH)
@@ -72,7 +72,13 @@ def sheet(creased=False, radius=1e-3, at=CORNER):
     middle = [(CELLS // 2 * rows + i, CELLS // 2 * rows + i + 1) for i in range(CELLS)]
     fold_line = {"creases": middle, "crease_signs": [-1] * CELLS} if creased else {}
     made = scene.add_membrane(
-        nodes, triangles, positions=nodes + at, radius=radius, interactions=False, **fold_line
+        nodes,
+        triangles,
+        positions=nodes + at,
+        radius=radius,
+        interactions=False,
+        **fold_line,
+        **options,
     )
     return made, nodes + at
 
@@ -110,6 +116,18 @@ def draw_strains(stage, net, rest):
         if name == "strain_2":
             stage.take("legend", drawLegend=True)
             stage.take("outlines", wire=True)
+
+
+def draw_film(stage, net, rest):
+    """A sheet of plane stress, taut, wrinkled and slack; no side is as short as it may be."""
+    contracted = -0.34 * 0.5 * RANGE  # across, by Poisson's ratio
+    for name, along_x, along_y in (
+        ("film_taut", 0.5 * RANGE, 0.99 * contracted),
+        ("film_wrinkled", 0.5 * RANGE, 1.01 * contracted),
+        ("film_slack", -1e-6, -1e-6),
+    ):
+        place(net, CORNER + (rest - CORNER) * (1 + along_x, 1 + along_y, 1))
+        stage.take(name)
 
 
 def draw_creases(stage, net, rest):
@@ -222,6 +240,10 @@ def main():
     net, rest = sheet(creased=True)
     stage.window.drawer.membrane = net
     draw_creases(stage, net, rest)
+
+    net, rest = sheet(film="plane_stress")
+    stage.window.drawer.membrane = net
+    draw_film(stage, net, rest)
 
     net, rest = sheet(radius=0.03)
     stage.window.drawer.membrane = net

@@ -151,6 +151,14 @@ class TestPictures(unittest.TestCase):
         self.assertEqual(np.argmax(wrinkled), np.argmax(taut))
         self.assertLess(vividness(film_colour("slack")), 0.5 * vividness(film_colour("strain_0")))
 
+    def test_film_of_plane_stress_is_dull_unless_taut(self):
+        taut = film_colour("film_taut")
+        np.testing.assert_allclose(taut, film_colour("strain_2"), rtol=0, atol=0.02)
+        self.assertLess(vividness(film_colour("film_wrinkled")), 0.5 * vividness(taut))
+        self.assertLess(
+            vividness(film_colour("film_slack")), 0.5 * vividness(film_colour("strain_0"))
+        )
+
     def test_outlines_leave_the_inside_of_triangles_free(self):
         filled, outlined = picture("strain_2"), picture("outlines")
         share = painted(outlined).sum() / painted(filled).sum()
