@@ -14,11 +14,13 @@ from membrane import scene
 from membrane.mesh import mesh_of
 from membrane.mesh.fold import fold
 from membrane.parameters import PHYSICAL, SailParameters, SceneParameters
+from membrane.results.output import list_series, read_frame
 from membrane.run import driver
 from membrane.run.sails import SAILS
 from membrane.scene.physical import physical_parameters
 from membrane.study.sources import paper
 from membrane.study.verification import film
+from membrane.view.report import run_data
 from support import (
     O,
     SceneTest,
@@ -419,12 +421,30 @@ class TestParameters(SceneTest):
             self.assertEqual(getattr(given, name), base[name])
         self.assertEqual((given.damping_time, given.zeta, given.beta), (2e-6, 0, 0))
 
-    def test_a_run_tells_its_lengths(self):
-        p = SailParameters(film="plane_stress", duration=2e-3, spin_up_tolerance=1e-1)
+    def test_a_run_tells_its_lengths_and_the_states_of_its_triangles(self):
+        p = SailParameters(film="plane_stress", duration=4e-3, spin_up_tolerance=1e-1)
+        folder = scratch() / "film_run"
         with quiet():
-            summary = driver.deploy(p, scratch() / "film_run", pictures=False, page=False)
+            summary = driver.deploy(p, folder, pictures=False, page=False)
         self.assertEqual(set(summary["film"]), set(PHYSICAL))
         self.assertAlmostEqual(summary["film"]["crease_length"], 8.29e-4, delta=1e-6)
+        _, path = list_series(folder / "shapes" / "film.pvd")[-1]
+        x, fields = read_frame(path)
+        triangles = mesh_of(p).triangles
+        _, strain, _ = paper.film_strain(x, mesh_of(p).nodes, triangles)
+        buckling = np.pi**2 * YOUNG * THICKNESS**2 / 12 / (1 - POISSON**2)
+        buckling /= summary["film"]["buckling_length"] ** 2
+        stress, _, states = paper.film_stress(strain, YOUNG, POISSON, buckling)
+        self.assertGreater(np.bincount(states, minlength=3).min(), 0)
+        np.testing.assert_array_equal(fields["film_state"], states)
+        principal = np.linalg.eigvalsh(stress)
+        np.testing.assert_allclose(fields["first_stress"], principal[:, 1], rtol=1e-5, atol=1.0)
+        np.testing.assert_allclose(fields["second_stress"], principal[:, 0], rtol=1e-5, atol=1.0)
+        lengths = np.linalg.norm(fields["wrinkles"], axis=1)
+        np.testing.assert_allclose(lengths, states == 1, atol=1e-6)
+        page = {field["name"]: field for field in run_data(folder)["fields"]}
+        self.assertEqual((page["film_state"]["low"], page["film_state"]["high"]), (0, 2))
+        self.assertEqual(page["first_stress"]["unit"], "kPa")
 
 
 if __name__ == "__main__":
