@@ -33,6 +33,7 @@ from support import (
     scratch,
     set_engines,
 )
+from yade import utils
 from yade import wrapper as yade
 
 YOUNG, POISSON, THICKNESS = 3.2e9, 0.34, 7.5e-6
@@ -227,6 +228,21 @@ class TestMotion(SceneTest):
             scene.advance(300)
             np.testing.assert_array_equal(node_states(made.membrane), whole)
 
+    def test_an_interaction_on_a_side_of_the_film_is_refused(self):
+        made = self.swinging("law2")
+        self.assertTrue(made.membrane.hasInteractions)
+        ids = made.membrane.bodyIds
+        utils.createInteraction(ids[0], ids[1])
+        with self.assertRaisesRegex(RuntimeError, "no side of the membrane"):
+            scene.advance(3)
+
+    def test_the_watch_names_the_triangle_that_goes_wrong(self):
+        made = self.swinging("fused")
+        made.forces.forceTimeStep = True
+        O.dt = 1.5 * made.forces.criticalTimeStep()
+        with self.assertRaisesRegex(RuntimeError, "the film and its cables gave .* at triangle"):
+            scene.advance(20_000)
+
     def test_threads_give_the_same_motion(self):
         found = []
         for threads in (1, 3):
@@ -270,6 +286,15 @@ class TestTimeStep(SceneTest):
             self.assertLessEqual(predicted, exact * (1 + 1e-6), name)
             if name == "taut":
                 self.assertGreater(predicted, 0.95 * exact)
+
+    def test_a_film_that_is_shortened_counts_as_if_taut(self):
+        nodes, triangles = grid(4, jitter=0.2, rng=np.random.default_rng(9))
+        sheet = film_sheet(nodes, triangles, engine={"dampingTime": TIME})
+        at_rest = sheet.place(nodes).engine.criticalTimeStep()
+        for share in (0.7, 0.3, 1e-3, 0.0):
+            found = sheet.place(share * nodes).engine.criticalTimeStep()
+            self.assertLess(found, 1.05 * at_rest, share)
+            self.assertGreater(found, 0.3 * at_rest, share)
 
     def test_damped_vibration_is_stable_below_the_predicted_step_and_not_far_above(self):
         nodes, triangles = grid(3)
@@ -440,6 +465,9 @@ class TestParameters(SceneTest):
         principal = np.linalg.eigvalsh(stress)
         np.testing.assert_allclose(fields["first_stress"], principal[:, 1], rtol=1e-5, atol=1.0)
         np.testing.assert_allclose(fields["second_stress"], principal[:, 0], rtol=1e-5, atol=1.0)
+        # A side is buckled beside a triangle that is not taut.
+        self.assertEqual(np.all(states == 0), not fields["buckled"].any())
+        self.assertGreaterEqual(fields["buckled"][states > 0].min(), 1)
         lengths = np.linalg.norm(fields["wrinkles"], axis=1)
         np.testing.assert_allclose(lengths, states == 1, atol=1e-6)
         page = {field["name"]: field for field in run_data(folder)["fields"]}

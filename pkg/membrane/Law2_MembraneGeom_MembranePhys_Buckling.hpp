@@ -14,7 +14,7 @@ public:
     // clang-format off
     YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Law2_MembraneGeom_MembranePhys_Buckling, LawFunctor,
         "Force of a side: linear, paper equation (3), and constant once buckled, equation (6). No torque, no shear. "
-        "With O.trackEnergy its strain energy [J] is kept as O.energy['membraneElastic'].",
+        "Of a film of plane stress only the cables are such sides. With O.trackEnergy its strain energy [J] is kept as O.energy['membraneElastic'].",
         ((int, energyIndex, -1, (Attr::hidden | Attr::noSave), "Where the energy is kept in O.energy."))
         ,
         ,

@@ -294,7 +294,7 @@ bool Membrane::hasInteractions() const {
     const shared_ptr<Scene> scene = Omega::instance().getScene();
     const auto isThere = [&](const ::membrane::Side& side) {
         const auto& link = scene->interactions->find(bodyIds[side.a], bodyIds[side.b]);
-        return link && dynamic_cast<MembranePhys*>(link->phys.get());
+        return rest_.isSpring(side) && link && dynamic_cast<MembranePhys*>(link->phys.get());
     };
     return !bodyIds.empty() && nodeWithoutBody(*scene) < 0 &&
            std::any_of(rest_.sides.begin(), rest_.sides.end(), isThere);

@@ -77,7 +77,7 @@ public:
         ((Real, cableStiffness, 200., Attr::readonly, "Axial stiffness EA of the cables [N], > 0."))
         ((Real, cableDensity, 2e-4, Attr::readonly, "Mass a length of the cables [kg/m], >= 0."))
         ((string, film, "springs", Attr::readonly, "'springs': paper equations (3), (5), (6), whose stiffness and buckling depend on the mesh; 'plane_stress': the same film on any mesh, "
-            "with a tension field and the buckling stress of bucklingLength. Then only cables are sides that pull; triangles of any shape are taken."))
+            "with a tension field and the buckling stress of bucklingLength. Then only cables are sides that pull, and interactions; the film is a force of the MembraneForceEngine, without which it has none. Triangles of any shape are taken."))
         ((Real, alpha, 100., Attr::readonly, "Buckling parameter alpha of the film [-], >= 0, paper equation (6); of springs, unless bucklingLength is given."))
         ((Real, alphaCrease, 100., Attr::readonly, "Buckling parameter alpha_c of sides on creases [-], >= 0; of springs, unless creaseBucklingLength is given."))
         ((Real, bucklingLength, 0., Attr::readonly, "Half-wavelength l_b [m] at which the film buckles, under E pi² h² / (12 (1 - nu²) l_b²), on any mesh; 0: springs by alpha, plane stress bears no compression."))

@@ -18,7 +18,8 @@ const ::membrane::Side* sideBetween(const Interaction& link, const Scene& scene)
     const MembraneNode* const node = first ? exactly<MembraneNode>(first->shape) : nullptr;
     if (!node || !node->membrane) return nullptr;
     const int side = node->membrane->sideBetween(link.getId1(), link.getId2());
-    return side < 0 ? nullptr : &node->membrane->rest().sides[side];
+    const ::membrane::RestState& rest = node->membrane->rest();
+    return side < 0 || !rest.isSpring(rest.sides[side]) ? nullptr : &rest.sides[side];
 }
 
 } // namespace

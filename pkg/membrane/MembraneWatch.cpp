@@ -107,12 +107,12 @@ vector<MembraneWatch::Part> MembraneWatch::parts(bool look) const {
         const ::membrane::ElementForce* const force = sweep.forceOf(channel);
         return force ? force : sides; // without one there is nothing to blame
     };
-    vector<Part> all{
-        {ledger->forces->membrane->rest().planeStress ? "the film" : "the sides", ledger->balance(), sides, true},
-        {"the creases", look ? ledger->creaseDefect() : 0., of(::membrane::creaseChannel), false, look},
-        {"damping", ledger->dampingWork, of(::membrane::dampingChannel)},
-        {"air drag", ledger->dragWork, of(::membrane::dragChannel)},
-        {"contacts", ledger->contactGain, nullptr}};
+    vector<Part> all{{ledger->forces->membrane->rest().planeStress ? "the film and its cables" : "the sides",
+                      ledger->balance(), sides, true},
+                     {"the creases", look ? ledger->creaseDefect() : 0., of(::membrane::creaseChannel), false, look},
+                     {"damping", ledger->dampingWork, of(::membrane::dampingChannel)},
+                     {"air drag", ledger->dragWork, of(::membrane::dragChannel)},
+                     {"contacts", ledger->contactGain, nullptr}};
     for (int channel = ::membrane::otherChannels; channel < static_cast<int>(sweep.channels().size()); ++channel)
         if (sweep.exchange(channel) == ::membrane::Exchange::loses)
             all.push_back({of(channel)->title(), ledger->workOf(sweep.channels()[channel]), of(channel)});
@@ -193,7 +193,13 @@ string MembraneWatch::worstPlace(const Part& part) const {
         const ::membrane::Points x = forces.lastPositions(), v = forces.lastVelocities();
         ::membrane::Points before;
         for (std::size_t i = 0; i < x.size(); ++i) before.push_back(x[i] - scene->dt * v[i]);
-        return elementText(part.force->culprit({x, v, before}, part.elastic), membrane);
+        ::membrane::Culprit most;
+        for (const auto& force : forces.sweep().forces()) { // film and cables share a channel
+            if (string(force->channel()) != part.force->channel()) continue;
+            const ::membrane::Culprit its = force->culprit({x, v, before}, part.elastic);
+            if (!(its.weight <= most.weight)) most = its;
+        }
+        return elementText(most, membrane);
     }
     const NodeContact* strongest = nullptr;
     for (const NodeContact& contact : forces.contacts())

@@ -360,7 +360,7 @@ LEDGER = (
         "buckled_sides",
         "-",
         "buckled sides",
-        lambda at: int(np.sum(side_lengths(at.x, at.sides) < at.critical)),
+        lambda at: int(np.sum(at.buckled)),
     ),
     Measure(
         "film_strain",

@@ -16,9 +16,36 @@ TautSide tautSide(const Side& s, double damping, const Points& x) {
     return {s.a, s.b, span / length, axial, std::max(0., tension / length), damping};
 }
 
+namespace {
+
+/// A triangle as large as at rest, anywhere.
+FilmSides sidesAtRest(const FilmRest& rest) {
+    const double base = std::sqrt(rest.square[0]);
+    const double along = 0.5 * (rest.square[2] - rest.square[1] - rest.square[0]) / base;
+    const Eigen::Vector3d b = Eigen::Vector3d::Zero(), c(base, 0., 0.);
+    return {c + Eigen::Vector3d(along, std::sqrt(std::max(0., rest.square[1] - along * along)), 0.), b, c};
+}
+
+/// The sides with which a triangle may be taut in the next step: none shorter than at rest. Where it has collapsed its
+/// directions are anybody's guess.
+FilmSides tautSides(const FilmRest& rest, FilmSides sides) {
+    constexpr double collapsed = 0.05;
+    double grown = 1.;
+    for (int i = 0; i < 3; ++i) {
+        const double share = std::sqrt(sides.side[i].squaredNorm() / rest.square[i]);
+        if (!(share > collapsed)) return sidesAtRest(rest);
+        grown = std::max(grown, 1. / share);
+    }
+    for (auto& side : sides.side) side *= grown;
+    return sides;
+}
+
+} // namespace
+
 StiffTriangle stiffTriangle(const Eigen::Vector3i& nodes, const FilmRest& rest, const FilmLaw& law, const Points& x) {
-    const FilmSides sides(x[nodes[0]], x[nodes[1]], x[nodes[2]]);
-    const Eigen::Vector3d g = filmGradient(law, rest, sides.grown(rest));
+    const FilmSides present(x[nodes[0]], x[nodes[1]], x[nodes[2]]);
+    const Eigen::Vector3d g = filmGradient(law, rest, present.grown(rest));
+    const FilmSides sides = tautSides(rest, present);
     const double volume = law.thickness * rest.area;
     const double mean = std::sqrt(volume * law.meanModulus()), shear = std::sqrt(0.5 * volume * law.shearModulus());
     StiffTriangle t;

@@ -66,8 +66,9 @@ def build(p: RunParameters, sail: Sail | None = None) -> tuple[Sail, scene.Membr
     """
     kind = SAILS[p.sail]
     sail = sail or kind.sail(p)
-    mesh, p = sail.mesh, kind.film(sail, p)
+    mesh = sail.mesh
     try:
+        p = kind.film(sail, p)
         membrane = scene.add_membrane(
             mesh.nodes,
             mesh.triangles,
@@ -285,7 +286,7 @@ class _Deployment:
         lengths = physical_parameters(self.sail.mesh, self.kind.film(self.sail, self.p))
         about = {"film": lengths, "critical_time_step": critical, "dt": self.steps.dt}
         self.facts = {**self.sail.facts, **about}
-        for doubt in self.sail.doubts:
+        for doubt in (*self.sail.doubts, *self.kind.about_film(self.p)):
             warn(doubt)
         if self.checkpoints:
             scene.sort_interactions()

@@ -142,6 +142,18 @@ class Kind(Generic[P]):
         """
         return p if p.film == "springs" else in_si(sail.mesh, p)
 
+    def about_film(self, p: P) -> list[str]:
+        """A sentence, if the film of a sail of plane stress depends on its mesh."""
+        missing = [name for name, n in PHYSICAL.items() if not getattr(p, name) and getattr(p, n)]
+        missing = [name for name in missing if name != "crease_buckling_length"]
+        if p.film == "springs" or not missing:
+            return []
+        numbers = ", ".join(PHYSICAL[name] for name in missing)
+        return [
+            f"film = {p.film}: {', '.join(missing)} follow from {numbers} on this mesh; give them "
+            "for the same film on any"
+        ]
+
     def explained(self, refusal: str) -> str:
         """What to tell where the plugin refuses the sail's membrane."""
         return refusal

@@ -30,7 +30,7 @@ SHAPE_FIELDS = {
     },
     "buckled": {
         "unit": "-",
-        "side": "1 below the critical length, else 0",
+        "side": "1 buckled, or beside a wrinkled or slack triangle; else 0",
         "triangle": "share of its three sides",
     },
     "crease_angle": {
@@ -73,8 +73,8 @@ class Instant:
         [kg]
     sides, kinds : (E, 2) int, (E,) int
         Nodes of each side; 0 film, 1 crease, 2 tether.
-    rest, critical, rest_areas : (E,) float, (E,) float, (T,) float
-        Lengths at rest and critical lengths [m], areas at rest [m2].
+    rest, buckled, rest_areas : (E,) float, (E,) bool, (T,) float
+        Lengths at rest [m], which sides are buckled, areas at rest [m2].
     kept : dict
         What measures keep from row to row; it goes into JSON.
     """
@@ -87,7 +87,7 @@ class Instant:
         self.turned = _angle(built.hub) if built.hub else recorder.spin_rate * time
         self.masses, self.rest_areas = recorder.masses, recorder.rest_areas
         self.sides, self.kinds = recorder.sides, recorder.kinds
-        self.rest, self.critical = recorder.rest, recorder.critical
+        self.rest, self.buckled = recorder.rest, recorder.buckled(self.x)
         self._once: dict[Callable, Any] = {}
 
     def once(self, function: Callable) -> Any:
@@ -193,7 +193,7 @@ class Recorder:
         fields = {
             "side_strain": length / self.rest - 1,
             "tension": np.array(self.built.membrane.tensions(x)),
-            "buckled": (length < self.critical).astype(np.int8),
+            "buckled": self.buckled(x).astype(np.int8),
             "crease_angle": angle,
         }
         lines = {**fields, "fold": self._signs, "kind": self.kinds}
@@ -223,6 +223,19 @@ class Recorder:
             "second_stress": second,
             "wrinkles": np.array(film.wrinkleDirections(x)),
         }
+
+    def buckled(self, x: np.ndarray) -> np.ndarray:
+        """Which sides (E,) are buckled at positions (N, 3) [m].
+
+        Those below their critical length; of a film of plane stress those of triangles that are
+        not taut.
+        """
+        short = side_lengths(x, self.sides) < self.critical
+        if not self._plane_stress:
+            return short
+        beside = np.zeros(len(short), dtype=bool)
+        beside[self._triangle_sides[np.array(self.built.membrane.filmStates(x)) > 0]] = True
+        return np.where(self.kinds < 2, beside, short)
 
     def columns(self) -> dict[str, np.ndarray]:
         """What was written to history.csv: arrays (S,) by name."""

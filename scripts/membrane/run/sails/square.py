@@ -54,6 +54,10 @@ class Square(Kind[P]):
             return replace(p, **numbers)
         return in_si(mesh_of(replace(p, refine=1)), p)
 
+    def about_film(self, p: P) -> list[str]:
+        """Nothing: what is not given in SI follows from refine 1."""
+        return []
+
     def draw(self, run: FinishedSail) -> None:
         """deployment.png, and shapes.png with six instants up to the fullest deployment."""
         columns = in_plots(self.measures, run.history)
