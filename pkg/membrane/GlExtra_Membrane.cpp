@@ -175,10 +175,11 @@ GlExtra_Membrane::Shape GlExtra_Membrane::shape(const shared_ptr<Membrane>& of, 
         made.strains.push_back(length / side.restLength - 1.);
         made.buckled.push_back(length < side.critical ? 1 : 0);
     }
-    for (std::size_t i = 0; i < of->triangles.size(); ++i) {
+    const vector<::membrane::FilmState> states = of->filmStatesAt(made.x);
+    for (std::size_t i = 0; i < states.size(); ++i) {
         const Vector3i& t = of->triangles[i];
         Real strain = -1.;
-        bool buckled = of->filmState(i, made.x) != ::membrane::FilmState::taut;
+        bool buckled = states[i] != ::membrane::FilmState::taut;
         for (int k = 0; k < 3; ++k) {
             const int side = rest.sideBetween(t[k], t[(k + 1) % 3]);
             strain = std::max(strain, made.strains[side]);

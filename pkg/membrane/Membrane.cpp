@@ -322,10 +322,6 @@ vector<Real> Membrane::lengths(const boost::python::object& at) const {
 vector<Real> Membrane::tensions(const boost::python::object& at) const {
     const ::membrane::Points x =
         positions(*Omega::instance().getScene(), pointsFrom(at, "Membrane.tensions: positions"));
-    return tensionsAt(x);
-}
-
-vector<Real> Membrane::tensionsAt(const ::membrane::Points& x) const {
     vector<Real> tensions = ofSides(rest_, [&](const ::membrane::Side& s) -> Real {
         const Real length = (x[s.b] - x[s.a]).norm();
         return rest_.isSpring(s) ? ::membrane::sideTension(length, s.stiffness, s.restLength, s.critical) : 0.;
@@ -342,28 +338,34 @@ vector<Real> Membrane::tensionsAt(const ::membrane::Points& x) const {
     return tensions;
 }
 
-::membrane::FilmState Membrane::filmState(std::size_t triangle, const ::membrane::Points& x) const {
-    if (!rest_.planeStress) return ::membrane::FilmState::taut;
-    const FilmTriangle t(*this, triangles[triangle], x);
-    return ::membrane::filmState(filmLaw(), ::membrane::filmStrain(t.rest, t.grown));
+vector<::membrane::FilmState> Membrane::filmStatesAt(const ::membrane::Points& x) const {
+    vector<::membrane::FilmState> states(triangles.size(), ::membrane::FilmState::taut);
+    if (!rest_.planeStress) return states;
+    const ::membrane::FilmLaw law = filmLaw();
+    std::transform(triangles.begin(), triangles.end(), states.begin(), [&](const Vector3i& corners) {
+        const FilmTriangle t(*this, corners, x);
+        return ::membrane::filmState(law, ::membrane::filmStrain(t.rest, t.grown));
+    });
+    return states;
 }
 
 vector<int> Membrane::filmStates(const boost::python::object& at) const {
-    const ::membrane::Points x =
-        positions(*Omega::instance().getScene(), pointsFrom(at, "Membrane.filmStates: positions"));
-    vector<int> states;
-    for (std::size_t i = 0; i < triangles.size(); ++i) states.push_back(static_cast<int>(filmState(i, x)));
-    return states;
+    vector<int> numbers;
+    for (const ::membrane::FilmState state :
+         filmStatesAt(positions(*Omega::instance().getScene(), pointsFrom(at, "Membrane.filmStates: positions"))))
+        numbers.push_back(static_cast<int>(state));
+    return numbers;
 }
 
 vector<Vector2r> Membrane::filmStresses(const boost::python::object& at) const {
     requirePlaneStress("filmStresses");
     const ::membrane::Points x =
         positions(*Omega::instance().getScene(), pointsFrom(at, "Membrane.filmStresses: positions"));
+    const ::membrane::FilmLaw law = filmLaw();
     vector<Vector2r> stresses;
     for (const FilmTriangle& t : filmTriangles(*this, x)) {
         const ::membrane::FilmStrain strain = ::membrane::filmStrain(t.rest, t.grown);
-        const ::membrane::FilmStress stress = ::membrane::filmStress(filmLaw(), strain);
+        const ::membrane::FilmStress stress = ::membrane::filmStress(law, strain);
         stresses.emplace_back(stress.mean + stress.shear * strain.half, stress.mean - stress.shear * strain.half);
     }
     return stresses;

@@ -36,10 +36,8 @@ public:
 
     /// The film, if it is one of plane stress. \param dampingTime tau [s]
     ::membrane::FilmLaw filmLaw(Real dampingTime = 0.) const;
-    /// State of a triangle at some places of the nodes [m]; always taut where the film is one of springs.
-    ::membrane::FilmState filmState(std::size_t triangle, const ::membrane::Points& x) const;
-    /// Tensions of the sides [N] at some places of the nodes [m].
-    vector<Real> tensionsAt(const ::membrane::Points& x) const;
+    /// States of the triangles at some places of the nodes [m]; all taut where the film is one of springs.
+    vector<::membrane::FilmState> filmStatesAt(const ::membrane::Points& x) const;
 
     vector<int> addBodies(const vector<Vector3r>& at, Real radius);
     vector<int> addBodiesPy(const boost::python::object& at, Real radius);

@@ -305,34 +305,30 @@ void MembraneForceEngine::checkSurroundings() {
 }
 
 void MembraneForceEngine::checkSides() {
+    const ::membrane::RestState& rest = membrane->rest();
     const auto computed = [&](const shared_ptr<MembranePhys>& phys) {
         if (!phys || phys->computed != scene->iter) return false;
         phys->checked = scene->iter;
         return true;
     };
     const auto all = [&] {
-        return interacting_.size() == springs() && std::count_if(interacting_.begin(), interacting_.end(), computed) ==
-                                                       static_cast<std::ptrdiff_t>(interacting_.size());
+        return interacting_.size() == rest.sides.size() - rest.firstSpring() &&
+               std::count_if(interacting_.begin(), interacting_.end(), computed) ==
+                   static_cast<std::ptrdiff_t>(interacting_.size());
     };
     if (all()) return;
     findSides();
     if (all() || !surroundings_.moves(*scene, left_)) return;
     const auto lost = std::find_if_not(interacting_.begin(), interacting_.end(), computed);
-    // Cables come last: where only they are springs, the first is that behind the film's sides.
-    refuseSide(lost - interacting_.begin() + (membrane->rest().sides.size() - springs()));
-}
-
-/// How many sides are springs, and so interactions.
-std::size_t MembraneForceEngine::springs() const {
-    const ::membrane::RestState& rest = membrane->rest();
-    return rest.planeStress ? rest.sides.size() - rest.filmSides : rest.sides.size();
+    refuseSpring(lost - interacting_.begin());
 }
 
 /// Looks up what computes the sides: interactions may have been removed and added again.
 void MembraneForceEngine::findSides() {
     interacting_.clear();
-    for (const ::membrane::Side& side : membrane->rest().sides) {
-        if (!membrane->rest().isSpring(side)) continue;
+    const ::membrane::RestState& rest = membrane->rest();
+    for (std::size_t i = rest.firstSpring(); i < rest.sides.size(); ++i) {
+        const ::membrane::Side& side = rest.sides[i];
         const auto& link = scene->interactions->find(membrane->bodyIds[side.a], membrane->bodyIds[side.b]);
         MembranePhys* const phys = link ? exactly<MembranePhys>(link->phys) : nullptr;
         interacting_.push_back(phys ? boost::static_pointer_cast<MembranePhys>(link->phys)
@@ -340,13 +336,14 @@ void MembraneForceEngine::findSides() {
     }
 }
 
-void MembraneForceEngine::refuseSide(std::size_t number) const {
-    const ::membrane::Side& side = membrane->rest().sides[number];
+void MembraneForceEngine::refuseSpring(std::size_t number) const {
+    const ::membrane::RestState& rest = membrane->rest();
+    const ::membrane::Side& side = rest.sides[rest.firstSpring() + number];
     for (const int node : {side.a, side.b}) checkNode(node); // which may be why
     const string a = std::to_string(side.a), b = std::to_string(side.b);
     const string which = "Membrane: side " + a + "-" + b + " (bodies #" + std::to_string(membrane->bodyIds[side.a]) +
                          " and #" + std::to_string(membrane->bodyIds[side.b]) + ")";
-    if (!interacting_[number - (membrane->rest().sides.size() - springs())])
+    if (!interacting_[number])
         throw std::runtime_error(which + " has no interaction with a MembranePhys, so that nothing computes it; call "
                                          "addInteractions() of the membrane");
     throw std::runtime_error(which + " was not computed in this step: put an InteractionLoop with "

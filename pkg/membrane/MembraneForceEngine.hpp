@@ -173,7 +173,7 @@ private:
     vector<shared_ptr<MembraneForce>> further_; ///< for which it is prepared
     vector<NodeContact> contacts_;
     vector<const Body*> left_;                     ///< bodies of the nodes that NewtonIntegrator may move
-    vector<shared_ptr<MembranePhys>> interacting_; ///< what computes the sides
+    vector<shared_ptr<MembranePhys>> interacting_; ///< what computes the springs among the sides
 
     void step();
     void checkLaws() const;
@@ -185,8 +185,7 @@ private:
     void checkTimeStep();
     void checkSides();
     void findSides();
-    std::size_t springs() const;
-    [[noreturn]] void refuseSide(std::size_t side) const;
+    [[noreturn]] void refuseSpring(std::size_t number) const;
     void findContacts();
     vector<Vector3r> channelForces(int channel) const;
 };

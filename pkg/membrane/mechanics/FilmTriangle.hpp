@@ -76,12 +76,22 @@ template <class Rest> inline FilmStrain filmStrain(const Rest& rest, const Eigen
 
 enum class FilmState : int { taut = 0, wrinkled = 1, slack = 2 };
 
-/// Taut without wrinkles, wrinkled across the first principal stress, or slack: compressed in both directions. The
-/// criterion is the one of stress and strain: strain alone fails in uniaxial tension.
-inline FilmState filmState(const FilmLaw& law, const FilmStrain& strain) {
+/// Whether a film bears its strain without wrinkles. The criterion is the one of stress and strain: strain alone fails
+/// in uniaxial tension.
+inline bool isTaut(const FilmLaw& law, const FilmStrain& strain) {
     const double e = law.buckling / law.young, nu = law.poisson;
-    if (0.5 * (1. + nu) * strain.trace + (1. - nu * nu) * e >= (1. - nu) * strain.half) return FilmState::taut;
-    return strain.first() >= -(1. - nu) * e ? FilmState::wrinkled : FilmState::slack;
+    return 0.5 * (1. + nu) * strain.trace + (1. - nu * nu) * e >= (1. - nu) * strain.half;
+}
+
+/// By how much the first principal strain is above that of a slack film [-]; below 0 it is one, unless it is taut.
+inline double beyondSlack(const FilmLaw& law, const FilmStrain& strain) {
+    return strain.first() + (1. - law.poisson) * (law.buckling / law.young);
+}
+
+/// Taut without wrinkles, wrinkled across the first principal stress, or slack: compressed in both directions.
+inline FilmState filmState(const FilmLaw& law, const FilmStrain& strain) {
+    if (isTaut(law, strain)) return FilmState::taut;
+    return beyondSlack(law, strain) >= 0. ? FilmState::wrinkled : FilmState::slack;
 }
 
 /// Second Piola-Kirchhoff stress, whose principal axes are those of the strain: E E1 - nu sigma_b and -sigma_b where
@@ -94,12 +104,11 @@ struct FilmStress {
 /// Without branches, and without a quotient that may be unbounded: where the principal strains come close to one
 /// another the film is taut or slack.
 inline FilmStress filmStress(const FilmLaw& law, const FilmStrain& strain) {
-    const double e = law.buckling / law.young, nu = law.poisson;
-    const double beyond = strain.first() + (1. - nu) * e; // E1 above that of a slack film
-    const bool taut = 0.5 * (1. + nu) * strain.trace + (1. - nu * nu) * e >= (1. - nu) * strain.half;
+    const double beyond = beyondSlack(law, strain);
+    const bool taut = isTaut(law, strain);
     const double ratio = strain.half > 0. ? 0.5 * law.young * beyond / strain.half : 0.;
     const double wrinkledMean =
-        beyond >= 0. ? 0.5 * (law.young * strain.first() - (1. + nu) * law.buckling) : -law.buckling;
+        beyond >= 0. ? 0.5 * (law.young * strain.first() - (1. + law.poisson) * law.buckling) : -law.buckling;
     const double wrinkledShear = beyond >= 0. ? std::min(ratio, law.shearModulus()) : 0.;
     return {taut ? law.meanModulus() * strain.trace : wrinkledMean, taut ? law.shearModulus() : wrinkledShear};
 }
@@ -107,13 +116,12 @@ inline FilmStress filmStress(const FilmLaw& law, const FilmStrain& strain) {
 /// Energy [J/m³] of a strain, a convex function of it: the least over all wrinkles.
 inline double filmEnergyDensity(const FilmLaw& law, const FilmStrain& strain) {
     const double e = law.buckling / law.young, nu = law.poisson, first = strain.first();
-    const bool taut = 0.5 * (1. + nu) * strain.trace + (1. - nu * nu) * e >= (1. - nu) * strain.half;
     const double ofTaut =
         0.5 * law.meanModulus() * strain.trace * strain.trace + law.shearModulus() * strain.half * strain.half;
     const double ofWrinkled = 0.5 * law.young * first * first - law.buckling * (nu * first + strain.second()) -
                               0.5 * law.buckling * e * (1. - nu * nu);
     const double ofSlack = -law.buckling * strain.trace - law.buckling * e * (1. - nu);
-    return taut ? ofTaut : first >= -(1. - nu) * e ? ofWrinkled : ofSlack;
+    return isTaut(law, strain) ? ofTaut : beyondSlack(law, strain) >= 0. ? ofWrinkled : ofSlack;
 }
 
 /// Energy [J] of a triangle. \param q l_i² - L_i² [m²]

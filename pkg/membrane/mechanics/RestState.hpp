@@ -61,6 +61,7 @@ struct RestState {
     double area = 0.;           ///< of the film [m²]
 
     bool isSpring(const Side& side) const { return !planeStress || side.kind == SideKind::cable; }
+    std::size_t firstSpring() const { return planeStress ? filmSides : 0; } ///< all that follow are springs, too
     /// Index in `sides` of the side between two nodes; -1 if there is none.
     int sideBetween(int a, int b) const;
 };

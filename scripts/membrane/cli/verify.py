@@ -16,7 +16,7 @@ from ..study.sources import REFERENCE
 from ..study.verification import table
 from .options import add_only
 
-MODULES = ["forces", "sheets", "film", "spinning", "deployment", "films", "paper"]
+MODULES = ["forces", "sheets", "film", "spinning", "deployment", "mesh_dependence", "paper"]
 RESULTS = REFERENCE / "verification.json"
 
 

@@ -187,21 +187,21 @@ class Recorder:
     def shape(self, time: float) -> None:
         """Append the shape of the last step, at `time` [s], to the ParaView series."""
         x = self.built.last_positions()
-        length = side_lengths(x, self.sides)
+        length, states = side_lengths(x, self.sides), self._states(x)
         angle = np.full(len(self.sides), np.pi)
         angle[self._crease_rows] = self.built.forces.creaseAngles(x)
         fields = {
             "side_strain": length / self.rest - 1,
             "tension": np.array(self.built.membrane.tensions(x)),
-            "buckled": self.buckled(x).astype(np.int8),
+            "buckled": self._buckled(length, states).astype(np.int8),
             "crease_angle": angle,
         }
         lines = {**fields, "fold": self._signs, "kind": self.kinds}
-        self._film.write(time, x, _single_precision(self._of_triangles(x, fields)))
+        self._film.write(time, x, _single_precision(self._of_triangles(x, fields, states)))
         self._lines.write(time, x, _single_precision(lines))
         self.frame_times.append(time)
 
-    def _of_triangles(self, x, fields):
+    def _of_triangles(self, x, fields, states):
         """Fields (T,) of the triangles from those of the sides (E,): see SHAPE_FIELDS."""
         three = {name: values[self._triangle_sides] for name, values in fields.items()}
         angles = three["crease_angle"]
@@ -210,15 +210,20 @@ class Recorder:
             "area_strain": area_strain(self.sail.mesh, x, self.rest_areas),
             **{name: three[name] @ THIRDS for name in ("side_strain", "tension", "buckled")},
             "crease_angle": angles[np.arange(len(angles)), most],
-            **(self._of_film(x) if self._plane_stress else {}),
+            **({} if states is None else self._of_film(x, states)),
         }
 
-    def _of_film(self, x):
+    def _states(self, x):
+        """States (T,) of the triangles of a film of plane stress; None if it is one of springs."""
+        film = self.built.membrane
+        return np.array(film.filmStates(x), dtype=np.int8) if self._plane_stress else None
+
+    def _of_film(self, x, states):
         """FILM_FIELDS (T,) and (T, 3) at positions (N, 3) [m]."""
         film = self.built.membrane
         first, second = np.array(film.filmStresses(x)).T
         return {
-            "film_state": np.array(film.filmStates(x), dtype=np.int8),
+            "film_state": states,
             "first_stress": first,
             "second_stress": second,
             "wrinkles": np.array(film.wrinkleDirections(x)),
@@ -230,11 +235,15 @@ class Recorder:
         Those below their critical length; of a film of plane stress those of triangles that are
         not taut.
         """
-        short = side_lengths(x, self.sides) < self.critical
-        if not self._plane_stress:
+        return self._buckled(side_lengths(x, self.sides), self._states(x))
+
+    def _buckled(self, length, states):
+        """The same from lengths (E,) [m] and `_states`."""
+        short = length < self.critical
+        if states is None:
             return short
         beside = np.zeros(len(short), dtype=bool)
-        beside[self._triangle_sides[np.array(self.built.membrane.filmStates(x)) > 0]] = True
+        beside[self._triangle_sides[states > 0]] = True
         return np.where(self.kinds < 2, beside, short)
 
     def columns(self) -> dict[str, np.ndarray]:

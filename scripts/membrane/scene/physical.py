@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from yade import wrapper as yade
 
-from ..geometry import triangle_areas
+from ..geometry import side_lengths, side_rows, triangle_areas, unique_sides
 from ..parameters import PHYSICAL, SceneParts, attributes
 
 
@@ -25,47 +25,38 @@ def physical_parameters(mesh: Any, p: SceneParts) -> dict[str, float]:
         With nodes (N, 3) [m], triangles (T, 3) and creases (C, 2).
     p : SceneParameters or RunParameters
     """
-    used, triangles = np.unique(mesh.triangles, return_inverse=True)  # not those of tethers
-    springs = yade.Membrane(
-        material=yade.MembraneMat(**attributes("MembraneMat", p)),
-        nodes=mesh.nodes[used],
-        triangles=triangles.reshape(-1, 3),
-        allowNegativeStiffness=True,
-    )
-    nodes, sides = mesh.nodes, used[np.array(springs.sides)]
+    sides, sides_of, _ = unique_sides(mesh.triangles)
     creases = np.asarray(mesh.creases, dtype=int).reshape(-1, 2)
-    folds = creases if len(creases) else sides
-    length = float(np.linalg.norm(np.diff(nodes[folds], axis=1), axis=2).mean())
+    folds = side_rows(sides, creases) if len(creases) else np.arange(len(sides))
+    lengths = side_lengths(mesh.nodes, sides)
+    heights = 2 * triangle_areas(mesh.nodes, mesh.triangles)[:, None] / lengths[sides_of]
+    length, height = lengths[folds].mean(), heights[np.isin(sides_of, folds)].mean()
     plate = 1 - p.poisson**2
     found = {
         "buckling_length": _over(length, sqrt(p.alpha * plate)),
         "crease_buckling_length": _over(length, sqrt(p.alpha_crease * plate)),
-        "crease_length": _over(_mean_height(mesh, folds), p.beta * plate),
-        "damping_time": _damping_time(springs, p.zeta),
+        "crease_length": _over(height, p.beta * plate),
+        "damping_time": _damping_time(mesh, p),
     }
     return {name: getattr(p, name) or found[name] for name in PHYSICAL}
 
 
 def _over(length, number):
     """0 where a number is 0: there is nothing of the kind."""
-    return length / number if number else 0.0
+    return float(length / number) if number else 0.0
 
 
-def _mean_height(mesh, folds):
-    """Mean height [m] of the triangles over some sides (C, 2)."""
-    wanted = {tuple(sorted(pair)) for pair in folds.tolist()}
-    nodes, triangles = np.asarray(mesh.nodes), np.asarray(mesh.triangles)
-    heights = []
-    for corner in range(3):
-        ends = np.sort(triangles[:, [corner - 2, corner - 1]], axis=1)
-        beside = np.array([tuple(pair) in wanted for pair in ends.tolist()])
-        spans = np.linalg.norm(np.diff(nodes[ends[beside]], axis=1), axis=2)[:, 0]
-        heights.append(2 * triangle_areas(nodes, triangles)[beside] / spans)
-    return float(np.concatenate(heights).mean())
-
-
-def _damping_time(springs, zeta):
+def _damping_time(mesh, p):
     """Time [s] of damping zeta, over all sides of a film of springs."""
+    if not p.zeta or p.damping_time:
+        return 0.0
+    used, triangles = np.unique(mesh.triangles, return_inverse=True)  # not nodes of tethers
+    springs = yade.Membrane(
+        material=yade.MembraneMat(**attributes("MembraneMat", p)),
+        nodes=mesh.nodes[used],
+        triangles=triangles.reshape(-1, 3),
+        allowNegativeStiffness=True,
+    )
     stiffness = np.maximum(springs.stiffnesses, 0.0)
     masses = np.array(springs.masses)[np.array(springs.sides)].mean(axis=1)
-    return float(2 * zeta * np.sqrt(stiffness * masses).sum() / stiffness.sum())
+    return float(2 * p.zeta * np.sqrt(stiffness * masses).sum() / stiffness.sum())

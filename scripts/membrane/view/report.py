@@ -66,8 +66,8 @@ def run_data(folder: Path | str) -> dict[str, Any]:
     """What the page shows of a run, as plain lists, numbers and packed arrays (see `_pack`)."""
     run = read_run(folder)
     triangles = len(run.triangles)
-    nodes = len(read_frame(run.shapes[0][1])[0])
-    there = read_frame(run.shapes[0][1])[1]
+    first, there = read_frame(run.shapes[0][1])
+    nodes = len(first)
     fields = FIELDS + tuple(field for field in FILM_FIELDS if field[0] in there)
     per_shape = 6 * nodes + len(fields) * triangles + len(run.creases)
     shapes = thinned(run.shapes, per_shape)

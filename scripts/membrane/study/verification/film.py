@@ -11,6 +11,7 @@ from math import log, pi, radians, sqrt
 
 import numpy as np
 from membrane import scene
+from membrane.mesh import sheet_mesh
 from membrane.mesh.fold import fold
 from yade import wrapper as yade
 
@@ -45,8 +46,8 @@ def settle(
     From `places` (N, 3) [m], in a frame that turns at omega [rad/s], under gravity [m/s2] along
     -z. RuntimeError if forces do not balance in a million steps.
     """
-    omega_frame = yade.Omega()
-    omega_frame.reset()
+    world = yade.Omega()
+    world.reset()
     net = scene.add_membrane(
         nodes, triangles, positions=places, interactions=False, film="plane_stress", **film
     )
@@ -54,12 +55,12 @@ def settle(
     made = scene.set_engines(net, scene.SceneParameters(omega=omega, gravity=gravity, **about))
     made.ledger.dead, made.newton.damping = True, 0.3
     made.field.dead = not omega
-    bodies = [omega_frame.bodies[i] for i in net.bodyIds]
+    bodies = [world.bodies[i] for i in net.bodyIds]
     free = np.ones((len(nodes), 3), dtype=bool)
     for node, directions in held.items():
         bodies[node].state.blockedDOFs = directions + "XYZ"
         free[node] = [axis not in directions for axis in "xyz"]
-    omega_frame.dt = 0.7 * made.forces.criticalTimeStep()
+    world.dt = 0.7 * made.forces.criticalTimeStep()
     masses = np.array(net.masses)[:, None]
     for _ in range(500):
         scene.advance(2000)
@@ -75,12 +76,8 @@ def settle(
 def film_forces(net: yade.Membrane, x: np.ndarray) -> np.ndarray:
     """Forces (N, 3) [N] of a membrane's sides and film on its nodes at positions (N, 3) [m]."""
     sides = np.array(net.sides)
-    spans = x[sides[:, 1]] - x[sides[:, 0]]
-    pulls = np.array(net.tensions(x))[:, None] * spans / np.linalg.norm(spans, axis=1)[:, None]
-    forces = np.zeros_like(x)
-    np.add.at(forces, sides[:, 0], pulls)
-    np.add.at(forces, sides[:, 1], -pulls)
-    return forces
+    direction, _ = paper.side_geometry(x, sides)
+    return paper.pull_together(len(x), sides, direction, np.array(net.tensions(x)))
 
 
 # --- a strip pulled and bent in its plane ---
@@ -94,13 +91,7 @@ def bent_strip(ratio: float, cells: int) -> float:
     height, columns = 0.1, 4
     slack = (3 * ratio - 0.5) * height
     cells = round(cells / (1 - slack / height))
-    rows = cells + 1
-    i, j = (axis.ravel() for axis in np.mgrid[: columns + 1, :rows])
-    nodes = height / cells * np.column_stack([i, j, 0 * i]).astype(float)
-    i, j = (axis.ravel() for axis in np.mgrid[:columns, :cells])
-    a = i * rows + j
-    b, c, d = a + rows, a + rows + 1, a + 1
-    triangles = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+    nodes, triangles = sheet_mesh(cells + 1, columns + 1, height / cells)
     x, y, _ = nodes.T
     curvature = SMALL / (height - slack)
     places = nodes + np.column_stack([x * curvature * (y - slack), 0 * x, 0 * x])
@@ -129,10 +120,7 @@ def ring(inner: float, outer: float, cells: int, around: int) -> tuple[np.ndarra
     i, j = (axis.ravel() for axis in np.mgrid[:cells, :around])
     a, d = i * around + j, i * around + (j + 1) % around
     b, c = a + around, d + around
-    cross = (i + j) % 2 == 1
-    first = np.column_stack([a, b, np.where(cross, d, c)])
-    second = np.column_stack([np.where(cross, b, a), c, d])
-    return nodes, np.concatenate([first, second])
+    return nodes, sheets.halves((a, b, c, d), (i + j) % 2 == 1)
 
 
 def pulled_ring(outer: float, pull: float, cells: int) -> tuple[float, float]:

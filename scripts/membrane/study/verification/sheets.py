@@ -64,10 +64,18 @@ def square_sheet(diagonals: str) -> tuple[np.ndarray, np.ndarray]:
     i, j = (axis.ravel() for axis in np.mgrid[:CELLS, :CELLS])
     a = i * rows + j
     b, c, d = a + rows, a + rows + 1, a + 1
-    cross = ((i + j) % 2 == 1) & (diagonals == "alternating")
+    return nodes, halves((a, b, c, d), ((i + j) % 2 == 1) & (diagonals == "alternating"))
+
+
+def halves(corners: tuple[np.ndarray, ...], cross: np.ndarray) -> np.ndarray:
+    """Triangles (2 n, 3) of cells with four corners (n,) in order, cut from the first to the third.
+
+    Those that are `cross` (n,) are cut from the second to the fourth.
+    """
+    a, b, c, d = corners
     first = np.column_stack([a, b, np.where(cross, d, c)])
     second = np.column_stack([np.where(cross, b, a), c, d])
-    return nodes, np.concatenate([first, second])
+    return np.concatenate([first, second])
 
 
 def equilateral_sheet() -> tuple[np.ndarray, np.ndarray]:
