@@ -65,7 +65,9 @@ PARTS = {
     "natural angle of 30 degrees": Part({"theta0": pi / 6, "crease_law": CONSERVATIVE}, rests=True),
     "twice the damping time": Part({"damping_time": 1.36e-6}),
     "half the time step": Part({"dt": 2.5e-6}, duration=SAMPLES[-1]),
-    "finer mesh (refine = 2)": Part({"refine": 2, "dt": 2.5e-6}, rests=True, duration=SAMPLES[-1]),
+    "finer mesh as printed (refine = 2)": Part(
+        {"refine": 2, "dt": 2.5e-6}, rests=True, duration=SAMPLES[-1]
+    ),
 }
 
 
